@@ -1,7 +1,7 @@
 // One attempt per invocation: a pixel of the region, the surface it shows, and one diffuse bounce from there. The
 // voxel side hit by the bounce becomes a candidate; it need not be visible to the eye. TRACED 1: every fourth attempt
 // first takes an eye path at random, and the candidate lies where that ends, with the light found there. Voxels know
-// only direct light, none of surfaces that shine, and their averages close gaps that light comes through.
+// only direct light, none of emissive surfaces, and their averages close gaps that light comes through.
 #include "device/texels.glsl"
 #include "scene/objects.glsl"
 #include "vpls/paraboloid.glsl"
@@ -31,7 +31,8 @@ layout(std430) writeonly buffer Candidates { Candidate candidates[]; };
 layout(std430) buffer Counters { uint counters[]; };  // in the order below
 
 const uint kRays = 0u, kCandidates = 1u, kEscaped = 2u, kBackground = 3u;
-const uint kCandidateStream = 0x63616e64u, kPathStream = 0x63617074u;  // keep the random numbers of this pass apart from others
+// Keep the random numbers of this pass apart from others.
+const uint kCandidateStream = 0x63616e64u, kPathStream = 0x63617074u;
 
 layout(push_constant) uniform Push {
   vec2 secondGaze;

@@ -1,5 +1,6 @@
-// Irradiance of every pixel by cones through the voxels, as pass radiance gathers it at VPLs (voxels/cone.glsl). Cones as
-// narrow as they must be to miss their own wall leave gaps, so pixels and frames turn them differently, for a mean.
+// Irradiance of every pixel by cones through the voxels, as pass radiance gathers it at VPLs (voxels/cone.glsl). Cones
+// that are narrow enough to miss their own wall leave gaps. Pixels and frames therefore turn them differently, so that
+// a mean has none.
 #include "sampling/random.glsl"
 #include "scene/scene.glsl"
 #define CONE_GATHER

@@ -248,7 +248,9 @@ void take(inout Centre c, Weighted sum, uvec2 bit) {
 }
 
 // Position of a subset's sample in the window.
-ivec2 placeInWindow(ivec2 offset) { return offset - INTERLEAVE * ivec2(greaterThanEqual(offset, ivec2(INTERLEAVE - INTERLEAVE / 2))); }
+ivec2 placeInWindow(ivec2 offset) {
+  return offset - INTERLEAVE * ivec2(greaterThanEqual(offset, ivec2(INTERLEAVE - INTERLEAVE / 2)));
+}
 
 // The sample of a subset on the other side of the pixel, used where an edge leaves the surface.
 Weighted lookAcross(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least) {
@@ -274,15 +276,17 @@ Weighted lookWider(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, flo
   return sum;
 }
 
-// Searches the missing subsets of a `wanted` pixel; those found are removed from the mask. Every invocation searches for
-// its own pixel: dividing the searches among the lanes of a subgroup saves nothing measurable on a CPU device, and a
-// driver of NVIDIA (580.159) loses samples of pixels at edges when lanes exchange them.
+// Searches the missing subsets of a `wanted` pixel; those found are removed from the mask. Every invocation searches
+// for its own pixel: dividing the searches among the lanes of a subgroup saves nothing measurable on a CPU device, and
+// a driver of NVIDIA (580.159) loses samples of pixels at edges when lanes exchange them.
 void search(inout Centre c, ivec2 p, ivec2 size, float plane, float least, bool wanted, bool across, bool window) {
   uvec2 left = wanted ? c.missing : uvec2(0u), bit;
   while (left != uvec2(0u)) {
     int subset = nextSubset(left, bit);
     ivec2 offset = ivec2(subset % INTERLEAVE, subset / INTERLEAVE);
-    take(c, across ? lookAcross(c, p, offset, size, plane, least) : lookWider(c, p, offset, size, plane, least, window), bit);
+    take(c,
+         across ? lookAcross(c, p, offset, size, plane, least) : lookWider(c, p, offset, size, plane, least, window),
+         bit);
   }
 }
 
@@ -292,7 +296,8 @@ void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
   ivec2 corner = p / BLOCK * BLOCK;
   for (int i = 0; i < BLOCK * BLOCK; ++i) {
     ivec2 q = corner + ivec2(i % BLOCK, i / BLOCK), d = q - p;
-    bool inWindow = all(greaterThanEqual(d, ivec2(-INTERLEAVE / 2))) && all(lessThan(d, ivec2(INTERLEAVE - INTERLEAVE / 2)));
+    bool inWindow = all(greaterThanEqual(d, ivec2(-INTERLEAVE / 2))) &&
+                    all(lessThan(d, ivec2(INTERLEAVE - INTERLEAVE / 2)));
     uvec2 bit = subsetBit((d + BLOCK) % INTERLEAVE);
     bool wanted = c.outside.a > 0.0 && !inWindow && all(lessThan(q, size)) && (c.missing & bit) != uvec2(0u);
     if (wanted && sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, c.plane, filterCos)) {

@@ -1,5 +1,5 @@
-// The grid of samples, the pixels that are shaded. With SCALE 1 these are all pixels, with SCALE 2 one of each square of
-// 2 x 2 pixels; their light is then kept in an image of half the width and height.
+// The grid of samples, the pixels that are shaded. With SCALE 1 these are all pixels, with SCALE 2 one of each square
+// of 2 x 2 pixels; their light is then kept in an image of half the width and height.
 #ifndef FOVEA_DEFERRED_SAMPLES_GLSL
 #define FOVEA_DEFERRED_SAMPLES_GLSL
 

@@ -1,5 +1,5 @@
-// A surface that the eye sees and what it makes of the light of one of the scene's lights. Define: GLOSS 0/1, 1 for full
-// materials: in place of rho / pi stands all that a surface reflects.
+// A surface that the eye sees, and what it reflects of the light of one of the scene's lights. Define: GLOSS 0/1, 1 for
+// full materials: in place of rho / pi stands all that a surface reflects.
 #if GLOSS
 #include "materials/gloss.glsl"
 #endif
@@ -40,7 +40,7 @@ Receiver receiverAt(ivec2 p) {
   return r;
 }
 
-// What the surface reflects of light that nothing hides: the irradiance or, with full materials, the radiance towards the
+// What the surface makes of light without occlusion: the irradiance or, with full materials, the radiance towards the
 // eye.
 vec3 response(Receiver r, LightSample e) {
   vec3 irradiance = e.irradiance * max(dot(r.normal, e.direction), 0.0);

@@ -48,7 +48,6 @@ void declareParameters(PassDeclaration& d) {
   d.parameter("averaged_frames", integer(1, 1, 65536),
               "number of frames averaged into the final image; each VPL's area (kernel `disc`) is divided "
               "by it, as if all VPLs were in one frame");
-  declareMaterials(d, "`full` lets metals keep their colour");
 }
 
 class Emit : public Pass {

@@ -1,6 +1,6 @@
-// Where the paths end whose turn it is, and the light found there, as passes/eye-paths-host finds them. Defines:
-// RAY_PASSAGE 0/1 (rays/trace.glsl); EMISSION 0/1, whether the ends show the light that surfaces emit
-// themselves; LATE 0/1, 1 for those paths whose turn it is not, but which are traced as light has changed.
+// Where the paths end whose turn it is, and the light found there. Defines: RAY_PASSAGE 0/1 (rays/trace.glsl); EMISSION
+// 0/1, whether the ends show the light that surfaces emit themselves; LATE 0/1, 1 for those paths whose turn it is not,
+// but which are traced as light has changed.
 #include "rays/gather.glsl"
 #include "records/eye_paths.h"
 
@@ -68,7 +68,8 @@ EyePathEnd endOf(EyePathStart start, uint point, uint turn_, uint paths) {
 void main() {
   uint path = gl_GlobalInvocationID.x, all = uint(pathsEnds.list.length());
   if (path >= all) return;
-  uint point = path % constants.points, turn_ = path / constants.points, paths = (all - point + constants.points - 1u) / constants.points;
+  uint point = path % constants.points, turn_ = path / constants.points,
+       paths = (all - point + constants.points - 1u) / constants.points;
   bool waits = (turns.list[point] & kPathsWait) != 0u, anew = (turns.list[point] & kPathsAnew) != 0u;
 #if LATE
   if (!waits || uniformFloat(point * kGoldenRatio) >= memory.value.outOfTurn) return;

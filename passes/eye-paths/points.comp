@@ -1,5 +1,4 @@
-// Where the paths of each screen point start, and whether it is their turn, as passes/eye-paths-host decides. Define:
-// RAY_PASSAGE 0/1 (rays/trace.glsl).
+// Where the paths of each screen point start, and whether it is their turn. Define: RAY_PASSAGE 0/1 (rays/trace.glsl).
 #include "sampling/fovea.glsl"
 #include "rays/surfaces.glsl"
 #include "records/eye_paths.h"
@@ -63,7 +62,9 @@ void main() {
   uint point = gl_GlobalInvocationID.x;
   if (point >= constants.points) return;
   Fovea fovea = makeFovea(view.gaze, view.size, constants.foveaRadius);
-  vec2 pixel = vec2(screenPoint(constants.region, constants.imageShare64ths, point, constants.points, fovea, ivec2(view.size))) + 0.5;
+  vec2 pixel = vec2(screenPoint(constants.region, constants.imageShare64ths, point, constants.points, fovea,
+                                ivec2(view.size))) +
+               0.5;
   EyePathStart start = pathsStarts.list[point];
   bool anew = point % constants.renew == constants.frameIndex % constants.renew && !belongs(start, pixel);
   if (!anew) anew = !stands(start);

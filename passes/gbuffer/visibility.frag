@@ -23,7 +23,7 @@ void main() {
   if (!gl_FrontFacing && !loadMaterial(material).doubleSided) discard;
 #endif
 #if PASSAGE
-  // The same as in scene::SurfaceTracer::look().
+  // The same decision as in look() of rays/surfaces.glsl.
   uint key = hashCombine(hashCombine(frame.seed, kPassageStream), triangle);
   float chance = passageChance(key, uvec2(gl_FragCoord.xy), frame.index);
   if (!stops(material, uv, abs(dot(normalize(normal), normalize(toEye))), chance)) discard;

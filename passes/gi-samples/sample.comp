@@ -1,7 +1,6 @@
-// The sample of each pixel, as passes/gi-samples-host finds it: what a ray meets, and the light that leaves from there.
-// Where surfaces shine, or the environment does, each path has a second ray that is aimed at them. One of all rays of a
-// pixel is chosen by resampling, weighted by the balance heuristic (Veach and Guibas 1995). Define: RAY_PASSAGE 0/1
-// (rays/trace.glsl).
+// The sample of each pixel: what a ray meets, and the light that leaves from there. Where there are emissive surfaces
+// or an environment map, each path has a second ray that is aimed at these. One of all rays of a pixel is chosen by
+// resampling, weighted by the balance heuristic (Veach and Guibas 1995). Define: RAY_PASSAGE 0/1 (rays/trace.glsl).
 #include "scene/blocks.glsl"
 #include "sampling/fovea.glsl"
 #include "rays/gather.glsl"
@@ -61,13 +60,15 @@ Reservoir sampleAt(uvec2 pixel) {
   TracedSurface v = look(vec2(pixel) + 0.5);
   if (!v.there) return kNothing;
   uint stream = randomStream(frame.seed, pixel.x, kGiSampleStream, pixel.y);
-  WeightedChoice among = WeightedChoice(uniformFloat(randomStream(stream, constants.frameIndex, kGiChoiceStream, 0u)), 0.0, 0.0);
+  WeightedChoice among =
+      WeightedChoice(uniformFloat(randomStream(stream, constants.frameIndex, kGiChoiceStream, 0u)), 0.0, 0.0);
   Choice choice = Choice(among, kNothing, 1.0);
   // Every second ray is the aimed one.
   for (uint i = 0u; i < 2u * constants.paths; ++i) {
     bool isAimed = (i & 1u) != 0u;
     if (isAimed && !hasEmitters()) continue;
-    uint path = constants.frameIndex * constants.paths + i / 2u, gatherStream = randomStream(stream, path, kGiGatherStream, 0u);
+    uint path = constants.frameIndex * constants.paths + i / 2u,
+         gatherStream = randomStream(stream, path, kGiGatherStream, 0u);
     EmitterRay ray = kNoEmitterRay;
     if (isAimed) ray = aimedRay(v, randomStream(stream, path, kGiAimStream, 0u));
     else ray.direction = cosineDirection(v.normal, streamSequence(stream, path));

@@ -75,7 +75,8 @@ void main() {
   VoxelSide side = loadSide(number);
   VoxelGrid grid = voxelsGrid();
   vec4 now = side.area > 0.0 ? radianceOf(grid, side, patchOf(grid, side), number & 1u) : vec4(0.0);
-  bool stays = number / 2u < voxelsInfo.value.staticVoxels && floatBitsToUint(now) == floatBitsToUint(radiance.sides[number]);
+  bool stays = number / 2u < voxelsInfo.value.staticVoxels &&
+               floatBitsToUint(now) == floatBitsToUint(radiance.sides[number]);
   radiance.sides[number] = now;
   changed.sides[number] = stays ? 0u : 1u;
 }

@@ -86,7 +86,8 @@ bool mayDiffer(uint number, bool asked) {
 void main() {
   uint voxels = voxelsInfo.value.voxels, number = gl_GlobalInvocationID.x;
   bool inList = number < 2u * voxels;
-  bool all_ = relightAll != 0u || number / 2u >= voxelsInfo.value.staticVoxels, may = mayDiffer(number, inList && !all_);
+  bool all_ = relightAll != 0u || number / 2u >= voxelsInfo.value.staticVoxels,
+       may = mayDiffer(number, inList && !all_);
   bool anew = inList && (all_ || may);
   if (inList && !anew) changed.sides[number] = 0u;  // otherwise light_inject.comp sets it
   uvec4 ballot = subgroupBallot(anew);

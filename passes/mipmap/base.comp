@@ -64,7 +64,8 @@ void main() {
   vec3 low = voxelToWorld(grid, 2.0 * vec3(cell) - 1.0), high = voxelToWorld(grid, 2.0 * vec3(cell) + 3.0);
   anew = all_ != 0u;
   for (uint i = 0u; i < kMoverBoxes; ++i)
-    anew = anew || (all(lessThanEqual(low, movers[2u * i + 1u].xyz)) && all(greaterThanEqual(high, movers[2u * i].xyz)));
+    anew = anew || (all(lessThanEqual(low, movers[2u * i + 1u].xyz)) &&
+                     all(greaterThanEqual(high, movers[2u * i].xyz)));
   for (int i = 0; i < (any_ != 0u ? 8 : 0); ++i) {
     int side = 2 * int(max(voxels[i], 1u) - 1u);
     uint new_ = texelOf(changed, side).x | texelOf(changed, side + 1).x;

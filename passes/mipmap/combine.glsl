@@ -15,7 +15,9 @@ const int kFaces = DIRECTIONAL != 0 ? 6 : 1;
 int axisOf(int face) { return face >> 1; }
 int columnChild(int face, int column, int along) {
   int axis = axisOf(face);
-  return axis == 0 ? along | column << 1 : axis == 1 ? (column & 1) | along << 1 | (column & 2) << 1 : column | along << 2;
+  return axis == 0   ? along | column << 1
+         : axis == 1 ? (column & 1) | along << 1 | (column & 2) << 1
+                     : column | along << 2;
 }
 int nearChild(int face, int column) { return columnChild(face, column, 1 - (face & 1)); }
 int farChild(int face, int column) { return columnChild(face, column, face & 1); }

@@ -11,7 +11,8 @@ layout(location = 0) out uvec4 points;
 layout(push_constant) uniform Constants { uint frameIndex; };
 
 void main() {
-  ivec2 block = ivec2(gl_FragCoord.xy), inside = ivec2(samplePixel(frameIndex, 2u, uvec2(block))), p = 2 * block + inside;
+  ivec2 block = ivec2(gl_FragCoord.xy), inside = ivec2(samplePixel(frameIndex, 2u, uvec2(block))),
+        p = 2 * block + inside;
   bool there = all(lessThan(p, imageSize(gbufferSpecular)));
   p = there ? p : ivec2(0);
   vec4 position = imageLoad(gbufferPosition, p), specular = imageLoad(gbufferSpecular, p);

@@ -30,7 +30,10 @@ void main() {
   vec4 light = constants.turn_ > 0u ? imageLoad(traced, pixel) : vec4(0.0);
   if (imageLoad(shadeMask, pixel).r > 0.0 && imageLoad(nearField, pixel).a == 0.0) {
     TracedSurface v = look(vec2(pixel) + 0.5);
-    if (v.there) light += vec4(nearLight(v, uvec2(pixel), constants.turn_, constants.bounces, kEmitterPoints).light / float(constants.samples), 0.0);
+    if (v.there)
+      light += vec4(nearLight(v, uvec2(pixel), constants.turn_, constants.bounces, kEmitterPoints).light /
+                        float(constants.samples),
+                    0.0);
     light.a = float(v.there);
     atomicAdd(counters.rays, rayCount);
     if (v.there && constants.turn_ == 0u) atomicAdd(counters.pixels, 1u);

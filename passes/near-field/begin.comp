@@ -25,8 +25,8 @@ void main() {
 #else
   vec4 changed = vec4(0.0);
 #endif
-  // The diagonal stands for the mean length as long as no surface sees another: what the sky sends is found all the
-  // same.
+  // The diagonal stands for the mean length as long as no surface sees another: light of the environment is found
+  // all the same.
   float known = state.value.meanLength > 0.0 ? state.value.meanLength : diagonal();
   state.value.area = onlyLength != 0u ? 0.0 : share * known * known / float(vpls);
   state.value.cellWidth = kNearCellWidth * known;

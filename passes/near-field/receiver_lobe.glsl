@@ -1,5 +1,4 @@
-// The lobe in which a surface that the eye sees reflects light, as the G-buffer keeps it; the same as
-// passes/near-field/receiver_lobe.h.
+// The lobe in which a surface that the eye sees reflects light, by what the G-buffer keeps of it.
 #include "materials/gloss.glsl"
 
 IMAGE(rgba16f, readonly, image2D, gbufferNormal);

@@ -16,7 +16,7 @@ VALUE(restrict, NearFieldState, state);
 LIST(restrict, NearFieldTile, tiles);
 LIST(readonly, uint, items);
 VALUE(readonly, uint, listed);
-LIST(restrict, vec4, traced);  // rgb: irradiance / pi; a: code, see passes::sampleCode()
+LIST(restrict, vec4, traced);  // rgb: irradiance / pi; a: code of the sample, see main()
 #if GLOSS
 LIST(restrict, vec4, tracedGloss);  // rgb: under the lobe
 #endif
@@ -69,12 +69,15 @@ void main() {
   bool leavesFirst = !v.there || !onSamePlane(at.position, at.normal, v.position, v.normal);
   if (leavesFirst) v = at;
 #if LOBES
-  lobe = receiverLobe(ivec2(min(pixelOf(leavesFirst ? constants.frameIndex : constants.frameIndex + constants.part, corner, side), viewSize() - 1u)),
-                      v.position);
+  lobe = receiverLobe(
+      ivec2(min(pixelOf(leavesFirst ? constants.frameIndex : constants.frameIndex + constants.part, corner, side),
+                viewSize() - 1u)),
+      v.position);
 #endif
   NearLight sum = NearLight(vec3(0.0), vec3(0.0));
   for (uint i = 0u; at.there && i < rays; ++i) {
-    NearLight its = nearLight(v, block, rays * (constants.frameIndex + constants.part) + i, constants.bounces, constants.emitterPoints);
+    NearLight its = nearLight(v, block, rays * (constants.frameIndex + constants.part) + i, constants.bounces,
+                              constants.emitterPoints);
     sum.light += its.light;
     sum.gloss += its.gloss;
   }

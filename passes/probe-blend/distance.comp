@@ -1,5 +1,5 @@
-// What probes see where: the mean distance and its square for each direction, of the rays around it, blended with those
-// of the previous frames (Majercik et al. 2019, sections 4.2 and 4.3).
+// What probes see in which direction: the mean distance and its square for each direction, of the rays around it,
+// blended with those of the previous frames (Majercik et al. 2019, sections 4.2 and 4.3).
 #include "device/texels.glsl"
 #include "probes/layout.glsl"
 

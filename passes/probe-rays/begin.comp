@@ -1,5 +1,4 @@
-// Where the probes of this frame lie and which directions their rays take: the same as probeGrid() and
-// probeDirections() of passes/probe-rays-host.
+// Where the probes of this frame lie, and which directions their rays take.
 #include "sampling/random.glsl"
 #include "records/probes.h"
 #include "scene/scene.glsl"

@@ -1,5 +1,5 @@
-// What each ray of each probe meets and the light found there, as passes/probe-rays-host finds it. Defines: RAY_PASSAGE
-// 0/1 (rays/trace.glsl); FEEDBACK 0/1, whether surfaces reflect the light that probes know.
+// What each ray of each probe meets, and the light found there. Defines: RAY_PASSAGE 0/1 (rays/trace.glsl); FEEDBACK
+// 0/1, whether surfaces reflect the light that probes know.
 #include "probes/light.glsl"
 #include "rays/gather.glsl"
 

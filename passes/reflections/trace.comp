@@ -1,5 +1,4 @@
-// A part of the mean light under the lobe of each mirror, as passes/reflections-host finds it: that of one ray. Define:
-// RAY_PASSAGE as 1.
+// A part of the mean light under the lobe of each mirror: that of one ray. Define: RAY_PASSAGE as 1.
 #include "materials/visible_normals.glsl"
 #include "rays/gather_cache.glsl"
 #include "mirror.glsl"
@@ -26,7 +25,8 @@ vec4 underLobe(Mirror m, mat3 axes, vec3 out_, vec2 u, uint stream) {
   vec3 origin = m.position + (m.face - m.away) * rayEpsilon();
   TracedSurface hit = arrive(origin, direction, kFarAway);
   if (hit.triangle == kNoTriangle)
-    return vec4(hasEnvironmentMap() ? weight * hit.brighter * environmentRadiance(direction) : vec3(0.0), 1.0 / kOutside);
+    return vec4(hasEnvironmentMap() ? weight * hit.brighter * environmentRadiance(direction) : vec3(0.0),
+                1.0 / kOutside);
   float nearness = 1.0 / max(distance(hit.position, origin), kLeastReach);
   if (!hit.there) return vec4(vec3(0.0), nearness);
   vec3 light = seenLight(hit, -direction, m.roughness);
@@ -43,8 +43,10 @@ void main() {
     mat3 axes = orthonormalFrame(m.normal);
     vec3 out_ = toLocal(axes, -m.away);
     out_ = normalize(vec3(vec2(out_), max(out_.z, kLeastLobe)));  // a bent normal may face away from the eye
-    uint stream = randomStream(frame.seed, uint(block.x), kMirrorStream, uint(block.y)), ray = constants.frameIndex + constants.part;
-    vec4 seen = underLobe(m, axes, out_, streamSequence(stream, ray), randomStream(stream, ray, kMirrorLightStream, 0u));
+    uint stream = randomStream(frame.seed, uint(block.x), kMirrorStream, uint(block.y)),
+         ray = constants.frameIndex + constants.part;
+    vec4 seen = underLobe(m, axes, out_, streamSequence(stream, ray),
+                          randomStream(stream, ray, kMirrorLightStream, 0u));
     float albedo = max(mirrorAlbedo(out_.z, m.roughness).all, kLeastLobe);
     sum += vec4(vec3(seen) / albedo, seen.a) / float(constants.parts);
     if (constants.part == 0u) atomicAdd(counters.mirrors, 1u);

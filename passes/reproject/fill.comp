@@ -43,7 +43,8 @@ vec4 fromNeighbours(ivec2 corner, ivec2 local) {
   vec4 sum = vec4(0.0);
   vec3 origin = vec3(0.0);
   vec4 position = imageLoad(gbufferPosition, corner + local);
-  vec3 normal = imageLoad(gbufferNormal, corner + local).xyz, face = octDecode(imageLoad(gbufferFace, corner + local).xy);
+  vec3 normal = imageLoad(gbufferNormal, corner + local).xyz,
+       face = octDecode(imageLoad(gbufferFace, corner + local).xy);
   float tolerance = planeTolerance * position.w;
   const int kSide = 2 * FILL + 1;
   for (int i = 0; i < kSide * kSide; ++i) {

@@ -75,7 +75,8 @@ void main() {
     // Densities are those of solid angles of this pixel, less the luminance of the sample, which both have in common.
     float grown = (visible & kItsSample) != 0u && its.weight > 0.0 ? growth(there, here, its, growthLimit) : 0.0;
     if (grown > 0.0) {
-      float density = otherCount * cosineTowards(there, its) / grown, ourDensity = ours.count * cosineTowards(here, its);
+      float density = otherCount * cosineTowards(there, its) / grown,
+            ourDensity = ours.count * cosineTowards(here, its);
       float share = count / otherCount * density / max(density + ourDensity, 1e-30);
       offer(its, share * lightAt(here, its) * its.weight * grown, hashCombine(stream, uint(k)));
     }

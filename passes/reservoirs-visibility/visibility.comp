@@ -1,5 +1,4 @@
-// Which pixels see the samples that they are about to share, as passes/reservoirs-visibility-host finds out. Define:
-// RAY_PASSAGE 0/1 (rays/trace.glsl).
+// Which pixels see the samples that they are about to share. Define: RAY_PASSAGE 0/1 (rays/trace.glsl).
 #include "rays/visibility.glsl"
 #include "sampling/reservoir.glsl"
 
@@ -46,7 +45,8 @@ void main() {
     uint source = imageLoad(sources, ivec2(p.x * each + k, p.y)).r;
     if (source == kNone) continue;
     ivec2 q = ivec2(source & 0xffffu, source >> 16);
-    bool mineSees = sees(position, face, loadReservoir(others, q.y * size.x + q.x)), itsSees = constants.previous != 0u && moves;
+    bool mineSees = sees(position, face, loadReservoir(others, q.y * size.x + q.x)),
+         itsSees = constants.previous != 0u && moves;
     if (!itsSees)
       itsSees = sees(vec3(imageLoad(otherGbufferPosition, q)), octDecode(vec2(imageLoad(otherGbufferFace, q))), mine);
     bits |= uint(mineSees) << 2 * k | uint(itsSees) << (2 * k + 1);

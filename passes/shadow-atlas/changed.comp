@@ -76,5 +76,6 @@ void main() {
     }
   }
   barrier();
-  if (gl_LocalInvocationIndex == 0u) changes.list[slot] = !stands ? kChangeAll : found != 0u ? kChangeMovers : kChangeNone;
+  if (gl_LocalInvocationIndex == 0u)
+    changes.list[slot] = !stands ? kChangeAll : found != 0u ? kChangeMovers : kChangeNone;
 }

@@ -25,7 +25,8 @@ layout(push_constant) uniform Constants {
 void append(uint pair, uint large, uint masked) {
   uint list = kStepWords * step_ + kListWords * (1u + large + 2u * masked);  // step_'s WorkList
   uint entry = atomicAdd(steps.words[list + 3u], 1u);
-  pairs.list[large != 0u ? largePlace(entry, capacity, masked != 0u) : smallPlace(entry, capacity, masked != 0u)] = pair;
+  pairs.list[large != 0u ? largePlace(entry, capacity, masked != 0u) : smallPlace(entry, capacity, masked != 0u)] =
+      pair;
   // The first entry of each group adds a group to the indirect dispatch.
   uint perGroup = large != 0u ? kLargePerGroup : kSmallPerGroup, group = entry / perGroup;
   bool inFirstRow = group < kGroupsPerRow;

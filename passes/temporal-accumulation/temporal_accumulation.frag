@@ -95,7 +95,8 @@ struct Sample {
   bool own;     // whether it lies on the pixel's surface
 };
 
-// Decodes sampleCode() of passes/near-field. It avoids divisions, which a CPU device executes one lane at a time.
+// The sample of a pixel. Its code, as pass near-field makes it: bits 0-3 width of its block, 4-6 and 7-9 place of its
+// pixel in the block, 10 if there is none. Divisions are avoided, as a CPU device executes them one lane at a time.
 Sample sampleAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
   ivec2 inside = clamp(p, ivec2(0), size - 1);
   vec4 value = imageLoad(samples, inside >> shift);

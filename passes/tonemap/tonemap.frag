@@ -1,5 +1,5 @@
-// T(x) = sRGB(clamp01(exposure * x)), with the transfer function of IEC 61966-2-1. Defines: REINHARD, AGX; ADAPTED, 1 to
-// read the exposure that replaces the scene's own.
+// T(x) = sRGB(clamp01(exposure * x)), with the transfer function of IEC 61966-2-1. Defines: REINHARD, AGX; ADAPTED, 1
+// to read the exposure that replaces the scene's own.
 
 uniform texture2D radiance;
 #if ADAPTED

@@ -20,5 +20,6 @@ void main() {
 #endif
   if (large) return;
   Material material = loadMaterial(materialOf(indices));
-  for (uint column = 0u; column < columns; ++column) visitColumn(t, constants.firstTriangle + i, indices, material, column);
+  for (uint column = 0u; column < columns; ++column)
+    visitColumn(t, constants.firstTriangle + i, indices, material, column);
 }

@@ -66,7 +66,9 @@ void addPiece(uint side, Piece piece, vec3 normal, SurfacePoint surface, uint ob
   atomicMax(sums.words[word + 26u], uint(min(piece.area * 32768.0, 65535.0)) << 16 | (0xffffu - object));
   // The same for the triangle, with coarser areas.
   const uint kNone = (1u << kTriangleBits) - 1u;
-  if (triangle < kNone) atomicMax(sums.words[word + 27u], uint(min(piece.area * 512.0, 1023.0)) << kTriangleBits | (kNone - triangle));
+  if (triangle < kNone)
+    atomicMax(sums.words[word + 27u],
+              uint(min(piece.area * 512.0, 1023.0)) << kTriangleBits | (kNone - triangle));
 }
 #endif
 

@@ -22,7 +22,8 @@ void main() {
   uint index = brickIndex(grid, brick), words = (vplCount + 31u) / 32u;
   if (bricks.list[index] == 0u) return;
   // Slightly wider, as average positions may lie outside their cell because of rounding.
-  vec3 low = voxelToWorld(grid, vec3(brick * kBrick) - 0.01), high = voxelToWorld(grid, vec3((brick + 1) * kBrick) + 0.01);
+  vec3 low = voxelToWorld(grid, vec3(brick * kBrick) - 0.01),
+       high = voxelToWorld(grid, vec3((brick + 1) * kBrick) + 0.01);
   float nearest = 1e38;
   for (uint i = 0u; i < vplCount; ++i) {
     VplSite site = loadSite(sites, i);

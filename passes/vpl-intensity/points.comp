@@ -1,5 +1,6 @@
 // The fixed screen points of the region from which densities are estimated: screenPoint(). They are the same in every
-// frame, so that only changes in the scene change the intensities. TRACED 1: the surfaces that pass eye-paths saw from such points, some of them in earlier frames.
+// frame, so that only changes in the scene change the intensities. TRACED 1: the surfaces that pass eye-paths saw from
+// such points, some of them in earlier frames.
 #include "scene/scene.glsl"
 #include "sampling/fovea.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"

@@ -43,7 +43,9 @@ const float kThinSite = -2.0;
 // that counts; seenFrom: number of screen points of which p is an average.
 const float kEnoughPoints = 4.0;
 
-float partKept(float p, float least, float seenFrom) { return min(min(p / max(least, 1e-30), seenFrom / kEnoughPoints), 1.0); }
+float partKept(float p, float least, float seenFrom) {
+  return min(min(p / max(least, 1e-30), seenFrom / kEnoughPoints), 1.0);
+}
 
 // Each of 64 invocations looks at every 64th point, and words of 32 bits say from which of them the VPL is seen.
 uint laneWords(uint points) { return (points + 2047u) / 2048u; }

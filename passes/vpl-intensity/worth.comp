@@ -1,6 +1,6 @@
-// Strategy `importance-area`: how much each VPL matters, for pass manage in the next frame. A piece of surface sends the
-// region the light p B per area, and VPLs should lie in proportion to it. With p_m the median of p_l, B_l the mean light
-// of the VPL's own paths, B_m that of all paths, and f = kFloor,
+// Strategy `importance-area`: how much each VPL matters, for pass manage in the next frame. A piece of surface sends
+// the region the light p B per area, and VPLs should lie in proportion to it. With p_m the median of p_l, B_l the mean
+// light of the VPL's own paths, B_m that of all paths, and f = kFloor,
 //   w = p_l / p_m (B_l + f B_m) / (B_m + f B_m),   I = w / (1 + w).
 // How many other VPLs are near changes neither p_l nor B_l, so new VPLs do not make those around them less important.
 // As light counts relative to its mean, VPLs that stay dark when a door is opened matter less. One work group. Define:

@@ -21,7 +21,8 @@ void main() {
   VplState state = loadVplState(vpls, slot);
   vec4 light = texelFetch(radiosity, int(slot));
   Vpl vpl = kNoVpl;
-  if (state.life > 0.0 && finite(vec4(state.position, 0.0)) && finite(vec4(state.normal, state.life)) && finite(light)) {
+  if (state.life > 0.0 && finite(vec4(state.position, 0.0)) && finite(vec4(state.normal, state.life)) &&
+      finite(light)) {
     vpl.position = state.position + offset * voxelsGrid().cell * state.normal;
     vpl.area = 1.0;
     vpl.normal = state.normal;

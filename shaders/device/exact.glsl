@@ -1,7 +1,7 @@
-// Quotients and square roots to the last bit. Vulkan rounds sums, differences and products as IEEE 754 does, and as
-// the CPU does with which results are compared, but a quotient may be 2.5 units in the last place off. Where a surface
-// ends in a cell or beside it would then depend on the device. DEVICE_QUOTIENT and DEVICE_ROOT are what the device makes
-// of them; a test puts worse ones in their place.
+// Quotients and square roots that are the same on every device. Vulkan rounds sums, differences and products as IEEE
+// 754 does, but a quotient may be off by 2.5 units in the last place. Whether a surface ends in a cell or beside it
+// would then depend on the device. DEVICE_QUOTIENT and DEVICE_ROOT are the device's own operations; a test puts less
+// accurate ones in their place.
 #ifndef FOVEA_EXACT_GLSL
 #define FOVEA_EXACT_GLSL
 
@@ -25,12 +25,13 @@ float restOf(float c, float a, float b) {
   return rest;
 }
 
-// The estimate with its correction, which is no number where the estimate is 0 or infinite.
+// The estimate with its correction, which is NaN where the estimate is 0 or infinite.
 float corrected(float estimate, float correction) {
   precise float sum = estimate + correction;
   return abs(correction) < abs(estimate) ? sum : estimate;
 }
 
+// a / b, rounded to the nearest float.
 float quotient(float a, float b) {
   float estimate = DEVICE_QUOTIENT(a, b);
   float near = corrected(estimate, DEVICE_QUOTIENT(restOf(a, estimate, b), b));
@@ -41,7 +42,8 @@ float quotient(float a, float b) {
   return abs(restOf(a, other, b)) < abs(rest) ? other : near;
 }
 
-// One in some millions is one unit off if DEVICE_ROOT is two off.
+// The square root of x >= 0, rounded to the nearest float. If DEVICE_ROOT is off by two units in the last place, one
+// result in some millions is off by one.
 float root(float x) {
   float estimate = DEVICE_ROOT(x);
   return corrected(estimate, DEVICE_QUOTIENT(0.5 * restOf(x, estimate, estimate), estimate));

@@ -1,4 +1,4 @@
-// Tests for infinities and NaN.
+// A test for infinities and NaN.
 #ifndef FOVEA_FINITE_GLSL
 #define FOVEA_FINITE_GLSL
 

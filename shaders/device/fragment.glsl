@@ -1,11 +1,13 @@
-// The triangle of the scene that a fragment shader is at, in what Commands::drawTriangles() draws. The vertex shader
-// has to use device/vertex.glsl.
+// Which triangle of the scene a fragment belongs to, in draws by Commands::drawTriangles().
+//
+// Needs a vertex shader that includes device/vertex.glsl.
 #ifndef FOVEA_DEVICE_FRAGMENT_GLSL
 #define FOVEA_DEVICE_FRAGMENT_GLSL
 
 #ifdef WITHOUT_geometryShader
 layout(location = 15) flat in uint drawn;
 
+// Number of the triangle, for sceneTriangle().
 uint drawnTriangle() { return drawn; }
 #else
 layout(push_constant) uniform Draw { uint firstTriangle; };

@@ -1,10 +1,10 @@
-// One triangle over the whole image; or two over each tile whose texel is not 0 in the mask that FOVEA_TILE_MASK names,
-// if it is defined. The viewport then spans whole tiles.
+// The vertex shader of full-screen steps: one triangle over the whole image or, if FOVEA_TILE_MASK names a mask, two
+// over each tile whose texel is not 0 there. The viewport then spans whole tiles.
 
 #ifdef FOVEA_TILE_MASK
 layout(r8) uniform readonly image2D FOVEA_TILE_MASK;
 
-// Names end in an underscore, as that of no mask does.
+// Names end in an underscore so that they cannot be that of the mask.
 void main() {
   ivec2 count_ = imageSize(FOVEA_TILE_MASK);
   int tile_ = gl_VertexIndex / 6, corner_ = gl_VertexIndex % 6;

@@ -1,34 +1,39 @@
-// Unsigned integers of 64 bits: those of the device, or pairs of 32 bits where it has none. Both wrap around.
+// Unsigned integers of 64 bits, `Long`: those of the device, or pairs of 32-bit integers where it has none. Both wrap
+// around.
 #ifndef FOVEA_DEVICE_LONG_GLSL
 #define FOVEA_DEVICE_LONG_GLSL
 
 #ifdef WITHOUT_shaderInt64
 struct Long { uint low, high; };
 
+// Conversions from and to 32 bits (lowBits() drops the upper half), and a < b.
 Long longOf(uint x) { return Long(x, 0u); }
 uint lowBits(Long x) { return x.low; }
 bool isLess(Long a, Long b) { return a.high == b.high ? a.low < b.low : a.high < b.high; }
 
+// a + b.
 Long plus(Long a, Long b) {
   uint carry, low = uaddCarry(a.low, b.low, carry);
   return Long(low, a.high + b.high + carry);
 }
 
+// a - b.
 Long minus(Long a, Long b) {
   uint borrow, low = usubBorrow(a.low, b.low, borrow);
   return Long(low, a.high - b.high - borrow);
 }
 
+// a b.
 Long times(Long a, uint b) {
   uint high, low;
   umulExtended(a.low, b, high, low);
   return Long(low, high + a.high * b);
 }
 
-// 0 < bits < 32.
+// x / 2^bits, rounded down; 0 < bits < 32.
 Long shiftedRight(Long x, int bits) { return Long(x.low >> bits | x.high << (32 - bits), x.high >> bits); }
 
-// The whole part of a / b, bit by bit; 0 < b < 2^63.
+// a / b, rounded down; 0 < b < 2^63.
 Long dividedBy(Long a, Long b) {
   Long rest = longOf(0u), quotient = longOf(0u);
   for (int bit = 0; bit < 64; ++bit) {

@@ -1,9 +1,10 @@
-// Texel buffers that may have more texels than a device of few maxTexelBufferElements allows, where they are storage
-// buffers: LARGE_TEXELS(vec4, radiance); declares one, and texelOf(radiance, i) reads it. A CPU device reads texel
-// buffers ten times as fast.
+// Read-only buffers of texels that may be larger than some devices allow (maxTexelBufferElements): there they are
+// storage buffers. Everywhere else they are texel buffers, which a CPU device reads ten times as fast.
 #ifndef FOVEA_DEVICE_TEXELS_GLSL
 #define FOVEA_DEVICE_TEXELS_GLSL
 
+// LARGE_TEXELS(vec4, radiance); declares the port `radiance` with texels of type float, vec4, uint or uvec4;
+// texelOf(radiance, i) reads texel i, an int, and texelsIn(radiance) is their number.
 #ifdef WITHOUT_maxTexelBufferElements
 #define LARGE_TEXELS(type, name) readonly buffer name##Texels { type list[]; } name
 #define texelOf(name, i) name.list[i]

@@ -1,5 +1,6 @@
-// The vertex of the scene that a vertex shader is at, in what Commands::drawTriangles() draws; and the layer of the
-// image that it is drawn into. The framework defines WITHOUT_FEATURE for what a device lacks.
+// Which vertex of the scene a vertex shader is at, in draws by Commands::drawTriangles(), and the layer of the image
+// that it draws into. The framework defines WITHOUT_geometryShader and WITHOUT_shaderOutputLayer where a device lacks
+// these.
 #ifndef FOVEA_DEVICE_VERTEX_GLSL
 #define FOVEA_DEVICE_VERTEX_GLSL
 
@@ -12,6 +13,7 @@
 // Draws are not indexed, and count the corners of triangles.
 layout(location = 15) flat out uint drawn;
 
+// Number of the vertex, for scenePosition() and the like.
 uint drawnVertex() {
   drawn = uint(gl_VertexIndex) / 3u;
   return sceneTriangle(drawn)[uint(gl_VertexIndex) % 3u];
@@ -20,8 +22,8 @@ uint drawnVertex() {
 uint drawnVertex() { return uint(gl_VertexIndex); }
 #endif
 
-// Each instance goes into the layer of its number. Without the feature each layer is rendered by itself, with the
-// instance of its number only.
+// Sends each instance into the layer of its number, and returns that number. Without the feature each layer is rendered
+// by itself, with its own instance alone.
 uint drawnLayer() {
 #ifndef WITHOUT_shaderOutputLayer
   gl_Layer = gl_InstanceIndex;

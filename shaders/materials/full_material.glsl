@@ -1,10 +1,14 @@
-// Full materials at a point of a surface; the same as scene::SurfaceMaterials.
+// Full materials at a point of a surface: glTF's metallic-roughness model with normal maps, KHR_materials_specular,
+// _ior, _clearcoat, _transmission (thin glass), _unlit and _emissive_strength.
+//
+// Define: MATERIAL_DETAIL 0/1/2, if materials have less than everything, which is 2.
 #ifndef FOVEA_FULL_MATERIAL_GLSL
 #define FOVEA_FULL_MATERIAL_GLSL
 
 #include "materials/passage.glsl"
 #include "scene/scene.glsl"
 
+// Both sets of texture coordinates at a point.
 struct TextureCoordinates {
   vec2 first, second;
 };
@@ -15,6 +19,7 @@ struct TextureCoordinates {
 #define MATERIAL_DETAIL 2
 #endif
 
+// A texture at a point, as linear light. texel: the first of the three that describe it in `sceneMaterials`.
 vec4 textureAt(int texel, TextureCoordinates at) {
 #if MATERIAL_DETAIL == 2
   bool second = (uint(texelOf(sceneMaterials, texel).w) & kTextureSecondSet) != 0u;
@@ -24,12 +29,13 @@ vec4 textureAt(int texel, TextureCoordinates at) {
 #endif
 }
 
-// White where the material has no such texture. `texel` is the first of the three that describe it.
+// The same for textures that materials have only with MATERIAL_DETAIL 1, and only with 2; white otherwise.
 vec4 mapTexture(int texel, TextureCoordinates at) { return MATERIAL_DETAIL >= 1 ? textureAt(texel, at) : vec4(1.0); }
 vec4 extensionTexture(int texel, TextureCoordinates at) {
   return MATERIAL_DETAIL == 2 ? textureAt(texel, at) : vec4(1.0);
 }
 
+// Both sets at a point of a triangle. weights: barycentric, of all three vertices; uv: the first set there.
 TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
   vec2 second = uv;
   if (MATERIAL_DETAIL == 2 && frame.firstDetail != 0u) {
@@ -40,6 +46,7 @@ TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
   return TextureCoordinates(uv, second);
 }
 
+// Colour of the vertices at a point of a triangle; white if they have none.
 vec3 vertexColor(uvec4 triangle, vec3 weights) {
   vec3 color = vec3(1.0);
   if (MATERIAL_DETAIL == 2 && frame.firstDetail != 0u) {
@@ -50,15 +57,17 @@ vec3 vertexColor(uvec4 triangle, vec3 weights) {
   return color;
 }
 
-// The direction of a corner's tangent, wherever the triangle is now.
+// The direction of a corner's tangent, wherever the triangle is now. corner: from the TangentRecord; edgeB, edgeC: from
+// the first vertex to the others; across: their cross product divided by the square root of its length.
 vec3 cornerTangent(vec3 corner, vec3 edgeB, vec3 edgeC, vec3 across) {
   vec3 t = corner.x * edgeB + corner.y * edgeC + corner.z * across;
   float d = length(t);
   return d > 0.0 ? t / d : t;
 }
 
-// normal: interpolated, on the side of the triangle that the eye sees; side: 1 if it is the one seen counter-clockwise,
-// else -1.
+// The normal that the normal map gives a point, world space, unit. surface: texel of the SurfaceRecord; weights: of all
+// three vertices; edgeB, edgeC: from the first vertex to the others, m; normal: interpolated, on the side that is seen;
+// side: 1 if that is the one whose vertices run counter-clockwise, else -1.
 vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edgeC, vec3 normal, float side,
                   TextureCoordinates at) {
   vec3 bent = normal;
@@ -86,22 +95,22 @@ vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edg
   return bent;
 }
 
-// Least cosine between the normal of shading and the direction to a viewer. A normal map, or interpolation on a coarse
-// mesh, may turn the normal away from a viewer who sees the surface; the normal is then bent back.
+// The shading normal, bent until its cosine to the viewer is at least kLeastCosine: a normal map, or interpolation on a
+// coarse mesh, may turn it away from a viewer who sees the surface. out_: unit, to the viewer.
 CONSTANT float kLeastCosine = 0.01;
 vec3 normalTowards(vec3 normal, vec3 out_) {
   float cosine = dot(normal, out_);
   return cosine < kLeastCosine ? normalize(normal + (kLeastCosine - cosine) * out_) : normal;
 }
 
-// What the G-buffer keeps of a surface.
+// What the G-buffer keeps of a surface: reflectance, lobe, and radiance in W/(sr m^2).
 struct FullSurface {
   vec3 albedo;  // of the diffuse layer, as the eye sees it
   Gloss gloss;
   vec3 emission;
 };
 
-// Scales all light that leaves the surface.
+// The surface with all light that leaves it scaled by a factor.
 FullSurface brighter(FullSurface s, vec3 factor) {
   float mean = dot(factor, vec3(1.0 / 3.0));
   s.albedo *= factor;
@@ -112,7 +121,8 @@ FullSurface brighter(FullSurface s, vec3 factor) {
   return s;
 }
 
-// leastRoughness: that of the surface and of its coat.
+// A material at a point of a triangle. weights: of all three vertices; cosine: between the shading normal and the
+// viewer; leastRoughness: the surface and its coat are treated as at least this rough.
 FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoordinates at, float cosine,
                         float leastRoughness) {
   int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;

@@ -1,23 +1,24 @@
-// Where surfaces let light through: holes of alpha masks, and with full materials alphaMode BLEND and thin glass. The
-// same as framework/scene/materials/passage.h.
+// Where surfaces let light through: holes of alpha masks, and with full materials alphaMode BLEND and thin glass.
+// Arguments of the functions: material is its number, uv the first set of texture coordinates, cosine that between
+// light and normal, above 0.
 #ifndef FOVEA_PASSAGE_GLSL
 #define FOVEA_PASSAGE_GLSL
 
 #include "materials/gloss.glsl"
 #include "sampling/random.glsl"
 
-// Texels of a SurfaceRecord and of its textures in it.
+// Texels of a SurfaceRecord in `sceneMaterials`, and at which of them its textures start.
 CONSTANT int kSurfaceTexels = 25, kMetallicRoughnessTexture = 4, kNormalTexture = 7, kSpecularTexture = 10,
           kSpecularColorTexture = 13, kTransmissionTexture = 16, kClearcoatTexture = 19,
           kClearcoatRoughnessTexture = 22;
 
-// What glass makes of the light that goes through it.
+// The share of light that the substance of glass lets through, by channels.
 vec3 glassColor(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
   return min(vec3(texelOf(sceneMaterials, surface)) * vec3(sampleSceneTexture(first + kColorTexture, uv)), 1.0);
 }
 
-// The share of light that goes straight through thin glass; materials are full. cosine: between light and normal.
+// The share of light that goes straight through thin glass, mean of the channels. For full materials alone.
 float passage(uint material, vec2 uv, float cosine) {
   int surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
   vec4 color = texelOf(sceneMaterials, surface), specular = texelOf(sceneMaterials, surface + 1),
@@ -38,6 +39,7 @@ vec3 glassTint(uint material, vec2 uv) {
 }
 
 // The share of light that the surface stops before any of it enters glass: alpha of BLEND, 0 or 1 of MASK, else 1.
+// flags, cutoff: of the material, if they are known already.
 float coverage(uint material, vec2 uv, uint flags, float cutoff) {
   if (cutoff == 0.0) return 1.0;
   int first = int(material) * kMaterialTexels;
@@ -45,14 +47,15 @@ float coverage(uint material, vec2 uv, uint flags, float cutoff) {
   return (flags & kMaterialBlended) != 0u ? clamp(alpha, 0.0, 1.0) : float(alpha >= cutoff);
 }
 
+// The same, with both looked up.
 float coverage(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
   return coverage(material, uv, flags, texelOf(sceneMaterials, first + 1).a);
 }
 
-// Whether a surface stops a ray at uv. chance: uniform in [0, 1); rays that pass with half the probability or more do
-// at one half.
+// Whether a surface stops a ray, as a random decision. chance: uniform in [0, 1), or kEitherWay, with which rays pass
+// if at least half of the light does.
 bool stops(uint material, vec2 uv, float cosine, float chance) {
   int first = int(material) * kMaterialTexels;
   float cutoff = texelOf(sceneMaterials, first + 1).a;
@@ -65,7 +68,8 @@ bool stops(uint material, vec2 uv, float cosine, float chance) {
   return stopped > chance;
 }
 
-// The share of light that passes the surface in either way, by channels; materials are full.
+// The share of light that passes the surface, beside what covers it or through the glass, by channels. For full
+// materials alone.
 vec3 transmittance(uint material, vec2 uv, float cosine) {
   int first = int(material) * kMaterialTexels;
   uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
@@ -76,7 +80,9 @@ vec3 transmittance(uint material, vec2 uv, float cosine) {
   return share;
 }
 
-// Whether a ray passes, see framework/scene/materials/passage.h.
+// The chance for stops() of a ray through a pixel: over neighbouring pixels and over turns the numbers are a
+// low-discrepancy sequence, so that a few of them tell the share. key: random, of the triangle, so that surfaces behind
+// each other let rays pass independently; turn_: number of the turn, such as the frame.
 float passageChance(uint key, uvec2 pixel, uint turn_) {
   uvec2 at = (key & 8u) != 0u ? uvec2(pixel.y, pixel.x) : pixel;
   uint along = (key & 16u) != 0u ? 0u - at.y : at.y;
@@ -84,7 +90,7 @@ float passageChance(uint key, uvec2 pixel, uint turn_) {
                       turn_ * (kPassageTurn + (key & 7u) * kPassageTurns));
 }
 
-// For what is looked up once and has no direction, such as a voxel.
+// The chance and the cosine for what is looked up once and has no direction, such as a voxel.
 CONSTANT float kEitherWay = 0.5, kMeanCosine = 0.67;
 
 #endif

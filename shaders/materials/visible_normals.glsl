@@ -1,5 +1,5 @@
-// Microfacet normals that a direction sees, as framework/scene/materials/microfacets.h chooses them. Directions are unit,
-// in a frame whose z is the normal of the surface, and point away from it.
+// Microfacet normals that a direction sees. Directions are unit, in a frame whose z is the normal of the surface, and
+// point away from it; alpha is GGX's.
 #ifndef FOVEA_VISIBLE_NORMALS_GLSL
 #define FOVEA_VISIBLE_NORMALS_GLSL
 
@@ -10,7 +10,7 @@ float smithLambda(vec3 v, float alpha) {
   return 0.5 * (sqrt(1.0 + alpha * alpha * dot(vec2(v), vec2(v)) / max(v.z * v.z, 1e-14)) - 1.0);
 }
 
-// A microfacet normal chosen among those that `out_` sees (Heitz, "Sampling the GGX Distribution of Visible Normals",
+// A random microfacet normal among those that `out_` sees (Heitz, "Sampling the GGX Distribution of Visible Normals",
 // JCGT 2018). u: uniform in [0, 1).
 vec3 sampleVisibleNormal(vec3 out_, float alpha, vec2 u) {
   vec3 stretched = normalize(vec3(alpha * vec2(out_), out_.z));

@@ -1,23 +1,29 @@
-// How probes are laid out in space and in their images. passes/probe-rays/probe_field.cpp has the same in C++.
+// How probes are laid out in space and in their images. Directions are unit; side is the width of a tile without its
+// border, in texels.
 #ifndef FOVEA_PROBES_GLSL
 #define FOVEA_PROBES_GLSL
 
 #include "scene/octahedral.glsl"
 #include "records/probes.h"
 
+// Number of probes in the grid.
 int probesOf(ProbeGrid grid) { return int(grid.columns * grid.rows * grid.layers); }
 
+// Number of the probe in a cell of the grid.
 int probeAt(ProbeGrid grid, ivec3 cell) {
   return cell.x + int(grid.columns) * (cell.y + int(grid.rows) * cell.z);
 }
 
+// The cell of a probe.
 ivec3 probeCell(ProbeGrid grid, int probe) {
   int columns = int(grid.columns), rows = int(grid.rows);
   return ivec3(probe % columns, probe / columns % rows, probe / columns / rows);
 }
 
+// The greatest distance that probes remember, m.
 float probeReach(ProbeGrid grid) { return kProbeReach * sqrt(3.0) * grid.spacing; }
 
+// The state of a probe. probes: the member `states` of the bundle `probes`.
 Probe loadProbe(samplerBuffer probes, int probe) {
   vec4 a = texelFetch(probes, 2 * probe), b = texelFetch(probes, 2 * probe + 1);
   return Probe(vec3(a), a.w, b.x, b.y, b.z, b.w);

@@ -1,14 +1,17 @@
-// Light of probes at a point (Majercik et al., JCGT 2019, section 5, with the bias of Majercik et al., JCGT 2021,
-// section 3). ProbeField::light() in passes/probe-rays/probe_field.cpp is the same in C++: both must be changed
-// together.
+// The light of probes at a point (Majercik et al., "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance
+// Fields", JCGT 2019, section 5, with the bias of Majercik et al., "Scaling Probe-Based Real-Time Dynamic Global
+// Illumination for Production", JCGT 2021, section 3).
+//
+// Needs the port `probes` of bundle `probes`.
 #include "device/language.glsl"
 #include "probes/layout.glsl"
 
-TEXTURE(texture2D, probesIrradiance);
-TEXTURE(texture2D, probesDistance);
-TEXTURE(samplerBuffer, probesStates);
+TEXTURE(texture2D, probesIrradiance);   // irradiance / pi
+TEXTURE(texture2D, probesDistance);     // mean distance and mean squared distance, m, m^2
+TEXTURE(samplerBuffer, probesStates);   // Probe
 
-// Between the four texels around `place`. The 32-bit formats need not have a filter of their own.
+// Bilinear interpolation between the four texels around a place, in texels from the centre of the first one. Devices
+// need not filter 32-bit formats.
 vec4 between(texture2D image, vec2 place) {
   ivec2 p = ivec2(floor(place));
   vec2 f = place - vec2(p);
@@ -17,7 +20,7 @@ vec4 between(texture2D image, vec2 place) {
   return mix(top, bottom, f.y);
 }
 
-// Chance that a probe sees a point at this distance in this direction, by Chebyshev's inequality.
+// Weight for the chance that a probe sees a point at this distance, m, in this direction, by Chebyshev's inequality.
 float chanceSeen(int probe, vec3 direction, float distance) {
   vec2 seen = vec2(between(probesDistance, probePlace(probe, kDistanceSide, direction)));
   float variance = abs(seen.y - seen.x * seen.x), behind = distance - seen.x;
@@ -26,7 +29,8 @@ float chanceSeen(int probe, vec3 direction, float distance) {
   return max(chance * chance * chance, 0.05);
 }
 
-// Irradiance / pi. bias: how far points are moved off their surface, in spacings of the grid.
+// Irradiance / pi, W/(sr m^2), at a point: world space, m; normal, towardsEye: unit. bias: how far points are moved off
+// their surface, in spacings of the grid.
 vec3 probeLight(ProbeGrid grid, float bias, vec3 position, vec3 normal, vec3 towardsEye) {
   vec3 moved = position + bias * grid.spacing * (0.2 * normal + 0.8 * towardsEye);
   ivec3 last = ivec3(grid.columns, grid.rows, grid.layers) - 1;

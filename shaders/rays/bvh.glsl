@@ -1,4 +1,5 @@
-// Rays through the trees of bounding boxes that scene::RayTables keeps on the device. A part of rays/trace.glsl.
+// Rays through the two trees of bounding boxes on the device, of triangles that never move and of all others. It is a
+// part of rays/trace.glsl, which is what shaders include.
 #ifndef FOVEA_RAYS_BVH_GLSL
 #define FOVEA_RAYS_BVH_GLSL
 
@@ -7,6 +8,7 @@ SCENE_TEXELS(12, uvec4, rayTriangles);  // leaf by leaf: vertices, triangle and 
 
 // ---- Boxes and triangles -----------------------------------------------------------------------------------------
 
+// A ray with what the tests of boxes and triangles need.
 struct PreparedRay {
   vec3 origin, inverse;
   float near, far;
@@ -14,8 +16,10 @@ struct PreparedRay {
   vec3 shear;   // of the direction to that axis
 };
 
+// The components of v in cyclic order, so that `third` comes last.
 vec3 permuted(vec3 v, int third) { return third == 0 ? v.yzx : third == 1 ? v.zxy : v; }
 
+// The ray, prepared.
 PreparedRay prepare(Ray ray) {
   PreparedRay r;
   r.origin = ray.origin;
@@ -31,8 +35,8 @@ PreparedRay prepare(Ray ray) {
   return r;
 }
 
-// Whether the ray meets the box, and where it enters. The far side is wider by the rounding errors (Ize, JCGT 2013), of
-// which there are more than on the host: a device may be off by 2.5 ulp as it divides.
+// Whether the ray meets the box. entry: distance at which it enters. The far side is moved out by the rounding errors
+// (Ize, "Robust BVH Ray Traversal", JCGT 2013), here enough for quotients that are off by 2.5 units in the last place.
 bool enters(PreparedRay r, vec3 low, vec3 high, out float entry) {
   vec3 a = (low - r.origin) * r.inverse, b = (high - r.origin) * r.inverse;
   vec3 nearer = min(a, b), farther = max(a, b) * (1.0 + 8.0 * 1.1920929e-7);
@@ -40,8 +44,9 @@ bool enters(PreparedRay r, vec3 low, vec3 high, out float entry) {
   return entry <= min(min(farther.x, farther.y), min(farther.z, r.far));
 }
 
-// Watertight (Woop, Benthin and Wald, JCGT 2013): `precise`, so that two triangles compute the same for the edge that
-// they share. On the edge itself both are hit.
+// Whether the ray meets the triangle a, b, c; distance_: as in RayHit; weights: of b and c. Watertight (Woop, Benthin
+// and Wald, JCGT 2013): `precise`, so that two triangles compute the same for the edge that they share. On the edge
+// itself both are hit.
 bool meets(PreparedRay r, vec3 a, vec3 b, vec3 c, out float distance_, out vec2 weights) {
   a = permuted(a - r.origin, r.longest);
   b = permuted(b - r.origin, r.longest);
@@ -55,7 +60,7 @@ bool meets(PreparedRay r, vec3 a, vec3 b, vec3 c, out float distance_, out vec2 
   return inside && determinant != 0.0 && distance_ > r.near && distance_ < r.far;
 }
 
-// Shortens the ray to the hits in a leaf.
+// Tests the triangles of a leaf, `count` of them from `first` on. Each hit shortens the ray.
 void meetLeaf(uint first, uint count, inout PreparedRay r, inout RayHit hit) {
   for (uint i = first; i < first + count; ++i) {
     uvec4 triangle = texelOf(rayTriangles, int(i));
@@ -73,8 +78,8 @@ void meetLeaf(uint first, uint count, inout PreparedRay r, inout RayHit hit) {
 
 // ---- The tree ----------------------------------------------------------------------------------------------------
 
-// Of two children whose boxes the ray enters, the nearer comes first. Nodes
-// are named by their first child; an empty tree has none, 0.
+// The nearest hit, or the first one found if `any` suffices. Of two children whose boxes the ray enters, the nearer
+// comes first. Nodes are named by their first child; 0 stands for an empty tree.
 RayHit trace(Ray ray, bool any) {
   PreparedRay r = prepare(ray);
   RayHit hit = RayHit(kNoTriangle, ray.far, vec2(0.0));

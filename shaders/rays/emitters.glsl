@@ -1,12 +1,16 @@
-// Emissive triangles and the scene's environment map as light sources that rays are aimed at, as scene::Emitters and
-// scene::EnvironmentMap choose among them on the host. Needs RAY_PASSAGE (rays/trace.glsl).
+// Emissive triangles and the environment map as light sources that rays are aimed at. A triangle is chosen by a walk
+// down a binary tree, at each node with the probability of the light that its halves may send to the receiver, as
+// bounded by boxes and cones of normals (Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive
+// Tree Splitting", HPG 2018).
+//
+// Define: RAY_PASSAGE (rays/trace.glsl).
 #ifndef FOVEA_RAYS_EMITTERS_GLSL
 #define FOVEA_RAYS_EMITTERS_GLSL
 
 #include "rays/trace.glsl"
 #include "records/emitters.h"
 
-SCENE_TEXELS(13, uvec4, rayEmitters);
+SCENE_TEXELS(13, uvec4, rayEmitters);  // emissive triangles, and tables of the map (records/emitters.h)
 
 // The surface that is lit.
 struct Receiver {
@@ -14,18 +18,21 @@ struct Receiver {
   vec3 normal;    // unit
 };
 
+// The EmitterHeader, and the number of emissive triangles.
 uvec4 emitterHeader() { return texelOf(rayEmitters, 0); }
 uint emitterCount() { return emitterHeader().x; }
 
 // ---- Bounds of the light that emitters send ------------------------------------------------------------------------
 
+// An emissive triangle. power: W / pi, mean of the channels; area: m^2; centre: world space, m; normal: unit.
 struct Emitter {
   uint triangle;
   bool bothSides;
-  float power, area, radius2;  // radius2: square of the distance between the centre and the farthest corner, m^2
+  float power, area, radius2;  // radius2: squared distance of the farthest corner from the centre, m^2
   vec3 centre, normal;
 };
 
+// The emissive triangle at a place in the order of the leaves.
 Emitter emitterAt(uint place) {
   uvec4 record = texelOf(rayEmitters, int(1u + place));
   uint index = record.x & ~kEmitterBothSides;
@@ -38,15 +45,17 @@ Emitter emitterAt(uint place) {
   return Emitter(index, record.x != index, uintBitsToFloat(record.y) * area, area, radius2, centre, normal);
 }
 
+// Power of the sides that emit, W / pi.
 float powerOfSides(Emitter e) { return e.bothSides ? 2.0 * e.power : e.power; }
 
-// x: cosine of an angle from 0 to pi, y: its sine. The difference is no less than 0.
+// An angle from 0 to pi. x: its cosine, y: its sine. angleLess() is a - b, or 0 if that is negative.
 vec2 angleOf(float cosine) { return vec2(cosine, sqrt(max(1.0 - cosine * cosine, 0.0))); }
 vec2 angleLess(vec2 a, vec2 b) {
   if (a.x >= b.x) return vec2(1.0, 0.0);
   return vec2(a.x * b.x + a.y * b.y, a.y * b.x - a.x * b.y);
 }
 
+// In proportion to a bound of the light that a node, or a triangle, sends to the receiver; 0 if it sends none.
 float nodeWeight(uint node, Receiver r) {
   int first = int(emitterHeader().y + 3u * node);
   vec4 sphere = uintBitsToFloat(texelOf(rayEmitters, first)), cone = uintBitsToFloat(texelOf(rayEmitters, first + 1));
@@ -62,6 +71,7 @@ float nodeWeight(uint node, Receiver r) {
   return power * max(emitting, kLeastEmitterCosine) * max(receiving, kLeastEmitterCosine) / d2;
 }
 
+// The same for a triangle.
 float emitterWeight(Emitter e, Receiver r) {
   vec3 to = r.position - e.centre;
   float above = dot(to, e.normal);
@@ -81,15 +91,18 @@ float firstHalf(uint node, Receiver r) {
   return first + second > 0.0 ? first / (first + second) : -1.0;
 }
 
+// Of a range of places, first and last + 1: where it is halved, and whether it is a leaf.
 uint middleOf(uvec2 range) { return range.x + (range.y - range.x) / 2u; }
 bool isEmitterLeaf(uvec2 range) { return range.y - range.x <= kEmittersInLeaf; }
 
+// Sum of the weights in a leaf.
 float leafWeight(uvec2 range, Receiver r) {
   float total = 0.0;
   for (uint i = range.x; i < range.y; ++i) total += emitterWeight(emitterAt(i), r);
   return total;
 }
 
+// A point on an emissive triangle.
 struct EmitterPoint {
   uint triangle;   // kNoTriangle if no emitter faces the receiver
   vec3 position;   // world space, m
@@ -111,8 +124,8 @@ EmitterPoint pointOn(Emitter e, vec2 u) {
   return EmitterPoint(e.triangle, position, e.normal, radiance, 1.0 / e.area);
 }
 
-// A point that may light the receiver. choice, u: uniform in [0, 1). The choice is rescaled after each decision, so one
-// number is enough.
+// A random point that may light the receiver; it may be occluded. choice, u: uniform in [0, 1). The choice is rescaled
+// after each decision, so that one number is enough.
 EmitterPoint sampleEmitters(Receiver r, float choice, vec2 u) {
   EmitterPoint p = kNoEmitterPoint;
   uvec2 range = uvec2(0u, emitterCount());
@@ -177,7 +190,7 @@ Emitter emitterByPower(float choice, OUT(float) probability) {
   return chosen;
 }
 
-// The place of a triangle in the order of the leaves, or the number of emitters if it is none.
+// The place of a triangle in the order of the leaves, or the number of emitters if it is not among them.
 uint placeOfEmitter(uint triangle) {
   uint first = 0u, last = emitterCount(), count = last;
   while (first < last) {
@@ -210,12 +223,13 @@ float emitterDensity(uint triangle, Receiver r) {
   return own > 0.0 ? probability * own / (leafWeight(range, r) * e.area) : 0.0;
 }
 
+// Whether a point is within `reach` metres of a sphere; radius2: its squared radius, m^2.
 bool isNear(vec3 point, float reach, vec3 centre, float radius2) {
   float radius = reach + sqrt(radius2);
   return dot(point - centre, point - centre) <= radius * radius;
 }
 
-// Whether an emitter is within `reach` metres of a point, by the bounding spheres of triangles.
+// Whether an emissive triangle is within `reach` metres of a point, by the bounding spheres of triangles.
 bool isEmitterWithin(vec3 point, float reach) {
   if (emitterCount() == 0u) return false;
   const uint kDeepest = 32u;
@@ -242,7 +256,8 @@ bool isEmitterWithin(vec3 point, float reach) {
 
 // ---- The environment map -------------------------------------------------------------------------------------------
 
-// Value i of the map's cumulative light.
+// The map's cumulative light. mapValue() is value i of the table, and mapShare() the share of element i of the row of
+// values that starts at `first`. The values of rows of texels follow those of the texels, from firstMapRow() on.
 float mapValue(uint i) {
   return uintBitsToFloat(texelOf(rayEmitters, int(emitterHeader().z + i / 4u))[i & 3u]);
 }
@@ -253,7 +268,8 @@ uint firstMapRow() {
 }
 bool isMapBlack() { return !(mapValue(firstMapRow() + uint(environmentSize().y) - 1u) > 0.0); }
 
-// The first of `count` cumulative values that exceeds u, and how far u lies between it and the one before.
+// The first of `count` cumulative values from `first` on that exceeds u. within: how far u lies between it and the one
+// before, in [0, 1).
 uint chooseInMap(uint first, uint count, float u, OUT(float) within) {
   uint low = 0u, high = count - 1u;
   while (low < high) {
@@ -266,6 +282,7 @@ uint chooseInMap(uint first, uint count, float u, OUT(float) within) {
   return low;
 }
 
+// The probability density of directions in a texel of the map, per sr.
 float mapDensityIn(uvec2 texel) {
   uvec2 size = uvec2(environmentSize());
   float step_ = kPi / float(size.y);
@@ -273,7 +290,7 @@ float mapDensityIn(uvec2 texel) {
   return mapShare(texel.y * size.x, texel.x) * mapShare(firstMapRow(), texel.y) / solidAngle;
 }
 
-// The probability density with which sampleMap() chooses a direction, per sr.
+// The probability density with which sampleMap() chooses a direction, which is unit, per sr.
 float mapDensity(vec3 direction) {
   vec2 size = vec2(environmentSize());
   float around = (atan(direction.x, -direction.z) + frame.environmentTurn) / (2.0 * kPi) + 0.5;
@@ -281,12 +298,13 @@ float mapDensity(vec3 direction) {
   return mapDensityIn(uvec2(min(place, size - 1.0)));
 }
 
+// A direction to the map.
 struct MapSample {
-  vec3 direction, radiance;
-  float density;  // 0: the map is black
+  vec3 direction, radiance;  // unit; W/(sr m^2)
+  float density;  // per sr; 0: the map is black
 };
 
-// A direction in proportion to the light from there, to within the size of a texel. u: uniform in [0, 1).
+// A random direction, in proportion to the light from each texel of the map. u: uniform in [0, 1).
 MapSample sampleMap(vec2 u) {
   if (isMapBlack()) return MapSample(vec3(0.0), vec3(0.0), 0.0);
   uvec2 size = uvec2(environmentSize());

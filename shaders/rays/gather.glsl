@@ -1,13 +1,16 @@
-// The light that reaches a surface after it has bounced between others, as scene::SurfaceTracer gathers it on the host.
-// Define: RAY_PASSAGE 0/1 (rays/trace.glsl).
+// The light that reaches a surface from emissive surfaces and from the environment map, and after reflection by other
+// surfaces: paths with next event estimation at every vertex and multiple importance sampling (Veach and Guibas,
+// "Optimally Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH 1995).
+//
+// Define: RAY_PASSAGE (rays/trace.glsl).
 #ifndef FOVEA_RAYS_GATHER_GLSL
 #define FOVEA_RAYS_GATHER_GLSL
 
 #include "rays/reflection.glsl"
 
-// The ray from v to a point on an emissive surface, or to the scene's environment map.
+// A ray from a surface to a point on an emissive surface, or to the environment map.
 struct EmitterRay {
-  bool there;       // whether a point was found that faces v and may light it; it may be hidden
+  bool there;       // whether a point was found that faces the surface; it may be occluded
   vec3 direction;   // unit
   float distance_;  // m; kFarAway to the environment
   float density;    // probability density of the direction, per sr
@@ -17,14 +20,16 @@ struct EmitterRay {
 
 CONSTANT EmitterRay kNoEmitterRay = EmitterRay(false, vec3(0.0), kFarAway, 0.0, kNoTriangle, vec3(0.0));
 
+// Whether rays have anything to be aimed at; whether a direction, which is unit, leaves a surface on the side where it
+// was reached; and the density with which cosineDirection() chooses the direction, per sr.
 bool hasEmitters() { return emitterCount() > 0u || hasEnvironmentMap(); }
 bool facesTo(TracedSurface v, vec3 direction) { return dot(v.normal, direction) > 0.0 && dot(v.face, direction) > 0.0; }
 float cosineDensity(TracedSurface v, vec3 direction) { return dot(v.normal, direction) / kPi; }
 
-// Probability with which aimedRay() chooses a surface, not the environment.
+// Probability with which aimedRay() chooses a surface and not the environment.
 float surfaceShare() { return !hasEnvironmentMap() ? 1.0 : emitterCount() == 0u ? 0.0 : 0.5; }
 
-// u: uniform in [0, 1); x chooses the emitter.
+// A random ray from v to what emits light. u: uniform in [0, 1), x chooses what; stream: of random numbers.
 EmitterRay aimedRay(TracedSurface v, vec3 u) {
   float share = surfaceShare();
   if (u.x >= share) {
@@ -46,19 +51,20 @@ EmitterRay aimedRay(TracedSurface v, vec3 u) {
   return EmitterRay(true, direction, distance_, share * p.density * d2 / cosine, p.triangle, p.radiance);
 }
 
+// The same with numbers of a stream.
 EmitterRay aimedRay(TracedSurface v, uint stream) {
   uint own = hashCombine(stream, kAimedRayStream);
   return aimedRay(v, vec3(uniformFloat(hashCombine(own, 2u)), streamSequence(own, 0u)));
 }
 
-// The ray to the environment map in a given direction, which is unit.
+// The ray to the environment map in a given direction, which is unit, with the density that aimedRay() has for it.
 EmitterRay rayOutside(TracedSurface v, vec3 direction) {
   if (!hasEnvironmentMap() || isMapBlack() || !facesTo(v, direction)) return kNoEmitterRay;
   return EmitterRay(true, direction, kFarAway, (1.0 - surfaceShare()) * mapDensity(direction), kNoTriangle,
                     environmentRadiance(direction));
 }
 
-// The share of its light that reaches v.
+// The share of the light of an aimed ray that reaches v, by channels. Traces a ray.
 vec3 visibleShare(TracedSurface v, EmitterRay to) { return lightAlong(v.origin, to.direction, to.distance_); }
 
 // Density with which aimedRay() chooses the direction from v to the surface `hit`, per sr; 0 if `hit` does not emit.
@@ -69,9 +75,10 @@ float aimedDensity(TracedSurface v, TracedSurface hit) {
   return density * d2 * sqrt(d2) / max(abs(dot(hit.face, to)), 1e-12);
 }
 
-// The part of one point on an emissive surface in the balance heuristic (Veach and Guibas 1995), beside `count` rays
-// that may hit such a surface by chance. byLobe: those rays are chosen by the reflection `full` instead of by the
-// cosine, and the result is multiplied by it.
+// Direct light at v, estimated by one aimed ray: mean radiance over the hemisphere weighted by the cosine, W/(sr m^2).
+// It is its part in the balance heuristic beside `count` other rays, which may hit emissive surfaces by chance. stream:
+// of random numbers; byLobe: the other rays are chosen by the reflection `full` and not by the cosine, and the result
+// is the radiance that leaves v.
 vec3 fromEmitters(TracedSurface v, float count, uint stream, bool byLobe, Reflection full) {
   if (!hasEmitters()) return vec3(0.0);
   EmitterRay to = aimedRay(v, stream);
@@ -88,12 +95,15 @@ vec3 fromEmitters(TracedSurface v, float count, uint stream, bool byLobe, Reflec
   return to.radiance * visibleShare(v, to) * (response / (to.density + count * density));
 }
 
-// What a ray brings. density: that of the direction, times the number of rays from `at`, per sr.
+// What a ray that leaves a surface meets.
 struct Arrival {
   TracedSurface next;
-  vec3 rho, light;  // of the surface that was met; the light is the environment's if there is none
+  vec3 rho, light;  // its reflectance and radiance, W/(sr m^2); the environment's if nothing was met
 };
 
+// Traces a ray from the surface `at`, and finds the light of lamps, of emission and of the environment at its end, the
+// last two by the balance heuristic. direction: unit; density: that of the direction, per sr, times the number of such
+// rays.
 Arrival arrival(TracedSurface at, vec3 direction, float density) {
   Arrival a = Arrival(arrive(at.origin, direction, kFarAway), vec3(0.0), vec3(0.0));
   if (!a.next.there) {
@@ -109,10 +119,12 @@ Arrival arrival(TracedSurface at, vec3 direction, float density) {
   return a;
 }
 
-// Cosine-weighted mean radiance that reaches v over its hemisphere from emissive surfaces, and that of all light after
-// at most `bounces` reflections, estimated with `count` rays, each of which continues with one ray per further bounce,
-// and with one point on an emissive surface at each vertex. isFull, which is a constant: with full materials `full`
-// says how v reflects that light, and the result is the radiance that leaves it.
+// Radiance that reaches v from emissive surfaces and the environment map directly, and from all light sources after 1
+// to `bounces` reflections by other surfaces: the mean over the hemisphere weighted by the cosine, W/(sr m^2), which is
+// the irradiance / pi. It is estimated with `count` rays, each of which continues with one ray per further bounce, and
+// with one aimed ray at each vertex. stream: of random numbers. isFull, which is a constant: with full materials `full`
+// says how v reflects that light, and the result is the radiance that leaves v. The light of lamps at v is not part of
+// it: see directLight() in rays/reflection.glsl.
 vec3 gather(TracedSurface v, uint bounces, uint count, uint stream, bool isFull, Reflection full) {
   vec3 sum = vec3(0.0);
   for (uint ray = 0u; ray < max(count, 1u); ++ray) {
@@ -158,12 +170,13 @@ vec3 gather(TracedSurface v, uint bounces, uint count, uint stream, bool isFull,
   return sum;
 }
 
+// The same for a diffuse surface.
 vec3 gather(TracedSurface v, uint bounces, uint count, uint stream) {
   Reflection unused;
   return gather(v, bounces, count, stream, false, unused);
 }
 
-// Radiance that leaves v after it has reflected the light that gather() finds.
+// Radiance that leaves v after it has reflected the light that gather() finds, W/(sr m^2).
 vec3 passedOn(TracedSurface v, Reflection r, uint bounces, uint count, uint stream) {
 #if RAY_PASSAGE
   return v.brighter * gather(v, bounces, count, stream, true, r);

@@ -1,10 +1,12 @@
-// A cache of the light that is gathered at surfaces, in cells of space, as passes::GatherCache is on the host: path space
-// filtering with a hash table (Binder et al., "Massively parallel path space filtering", 2019). The samples of a frame
-// become part of the cells at its end, so that it does not matter which of them comes first. Only where the table is so
-// full that a cell finds none of its places free do results depend on that.
+// A cache of the light that is gathered at surfaces, in cells of space: path space filtering with a hash table (Binder
+// et al., "Massively Parallel Path Space Filtering", 2019). The samples of a frame become part of the cells at its end,
+// so that it does not matter which of them comes first. Only where the table is so full that a cell finds none of its
+// places free do results depend on that.
 //
-// A pass that includes this keeps a buffer `cells` of kGatherCells GatherCells, and its last step calls mergeSamples() for
-// each of them. Needs RAY_PASSAGE (rays/trace.glsl).
+// Define: RAY_PASSAGE (rays/trace.glsl).
+//
+// Needs the port `cells`, a buffer of kGatherCells GatherCells that the pass keeps, and a last step that calls
+// mergeSamples() for each of them.
 #ifndef FOVEA_RAYS_GATHER_CACHE_GLSL
 #define FOVEA_RAYS_GATHER_CACHE_GLSL
 
@@ -12,18 +14,19 @@
 #include "rays/gather.glsl"
 #include "records/gather_cache.h"
 
-LIST(restrict, GatherCell, cells);
+LIST(restrict, GatherCell, cells);  // records/gather_cache.h
 
 uint gatherCount = 0u;  // how often this invocation has gathered light
 
+// A cell by its hash.
 struct CellName {
   uint key;    // never 0
   uint first;  // its places in the table follow this one
 };
 
-// The cell of a point on a surface; cells are about `width` metres wide, a power of two. jitter: in [-0.5, 0.5) for
-// each axis, by which the point is moved in widths of a cell, so that the borders of cells do not show. Sides that face
-// different ways have different cells.
+// The cell of a point on a surface, world space, m. normal: unit; surfaces that face along different axes have
+// different cells. jitter: in [-0.5, 0.5) for each axis, by which the point is moved in widths of a cell, so that the
+// borders of cells do not show. width: of cells, m, rounded down to a power of two.
 CellName cellOf(vec3 position, vec3 normal, vec3 jitter, float width) {
   vec3 size = abs(normal);
   int axis = size.x >= max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
@@ -43,8 +46,8 @@ uint findCell(CellName cell) {
   return kGatherCells;
 }
 
-// The same, where the cell gets a place if one is free. While samples are added, no place becomes free: invocations
-// that want the same cell at the same time agree on the first one.
+// The same, but a cell without a place gets one if one is free. While samples are added, no place becomes free, so that
+// invocations that want the same cell at the same time agree on the first one.
 uint claimCell(CellName cell) {
   uint found = findCell(cell);
   for (uint i = 0u; i < kGatherPlaces && found == kGatherCells; ++i) {
@@ -55,6 +58,7 @@ uint claimCell(CellName cell) {
   return found;
 }
 
+// Adds a sample to a cell. light: radiance, W/(sr m^2).
 void addToCell(CellName cell, vec3 light) {
   uint place = claimCell(cell);
   if (place == kGatherCells) return;
@@ -65,10 +69,11 @@ void addToCell(CellName cell, vec3 light) {
   ADD_TO_SUM(cells.list[place].blue, cells.list[place].blueHigh, light.b);
 }
 
-// What the samples of a cell are worth after light has changed: n are worth n / (1 + n ageing).
+// What the n samples of a cell are worth after the light has changed: n / (1 + n ageing).
 float agedWeight(GatherCell cell, float ageing) { return cell.weight / (1.0 + cell.weight * ageing); }
 
-// Makes the samples of this frame part of a cell and lets cells go that have had none for long.
+// Makes the samples of this frame part of the cell at a place, and frees the place if there have been none for
+// kMostIdle frames. ageing: as in agedWeight().
 void mergeSamples(uint place, float ageing) {
   GatherCell cell = cells.list[place];
   if (cell.key == 0u) return;
@@ -86,8 +91,8 @@ void mergeSamples(uint place, float ageing) {
   cells.list[place] = cell;
 }
 
-// The mean radiance that reaches v after at most `bounces` reflections, and from emissive surfaces. stream: of random
-// numbers; width: of the cells; ageing: of this frame.
+// What gather() finds at v with one ray, W/(sr m^2), from the cache where enough is known. stream: of random numbers;
+// width: of the cells, m; ageing: as in agedWeight().
 vec3 gatheredLight(TracedSurface v, uint bounces, uint stream, float width, float ageing) {
   vec3 jitter = vec3(uniformFloat(randomStream(stream, 0u, kCellStream, 0u)),
                      uniformFloat(randomStream(stream, 1u, kCellStream, 0u)),

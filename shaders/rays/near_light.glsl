@@ -1,22 +1,27 @@
-// Light from nearby surfaces at one point, as passes/near-field-host finds it. Define: RAY_PASSAGE 0/1
-// (rays/trace.glsl), MAP_ALONE 0/1, 1 if only the light of the environment map is found.
+// Light from nearby surfaces at one point: the part of it that VPLs leave out whose kernel is a disc (passes/README.md,
+// near-field).
+//
+// Define: RAY_PASSAGE (rays/trace.glsl); MAP_ALONE 0/1, 1 if only the light of the environment map is found.
+//
+// Needs the functions that it declares, defined by whoever includes it.
 #include "rays/gather.glsl"
 #include "records/near_field.h"
 
-// Who includes this says how large the discs are, m^2 (if 0, rays find out their length and no light), what comes of
-// the length of a ray and how probable that was, the mean radiance that reaches a surface after `bounces` reflections,
-// and what light from a direction, which is unit, adds to the mean of the light under the lobe of the surface for each
-// unit of irradiance / pi that it adds, which counts by `cosine`.
+// discArea(): how large the discs of VPLs are, m^2; if 0, rays find out their length and no light. noteLength(): takes
+// the length of a ray, m, and the probability of going so far. furtherLight(): what gather() would find at v, W/(sr
+// m^2). underLobe(): what light from a direction, which is unit, adds to the mean of the light under the lobe of the
+// surface for each unit of irradiance / pi that it adds; cosine: by which that irradiance counts.
 DECLARE(float discArea());
 DECLARE(void noteLength(float distance_, float probability));
 DECLARE(vec3 furtherLight(TracedSurface v, uint bounces, uint stream));
 DECLARE(float underLobe(vec3 direction, float cosine));
 
-// Light that arrives: irradiance / pi, and the mean under the lobe of the surface.
+// Light that arrives, W/(sr m^2): irradiance / pi, and the mean under the lobe of the surface.
 struct NearLight {
   vec3 light, gloss;
 };
 
+// Adds irradiance / pi from one direction, which is unit.
 void add(INOUT(NearLight) sum, TracedSurface v, vec3 light, vec3 direction) {
   sum.light += light;
   sum.gloss += underLobe(direction, dot(v.normal, direction)) * light;
@@ -24,14 +29,15 @@ void add(INOUT(NearLight) sum, TracedSurface v, vec3 light, vec3 direction) {
 
 uint shadedCount = 0u;  // rays at whose ends this invocation has evaluated the light
 
-// The part of the light from this distance that discs leave out, and the probability with which a cosine-weighted ray
-// goes so far.
+// Squared radius of a disc, m^2; the part of the light from a distance, m, that discs leave out; and the probability
+// with which a cosine-weighted ray goes so far.
 float discRadius2() { return discArea() / kPi; }
 float partAt(float distance_) { return discRadius2() / (distance_ * distance_ + discRadius2()); }
 float probabilityAt(float distance_) { return min(kSure * partAt(distance_), 1.0); }
 
-// The light along a ray over the densities of all ways to choose it, as far as each counts. Beside the points on
-// surfaces a cosine-weighted ray counts once, in the environment as much as all cosine-weighted points together.
+// The light along an aimed ray, divided by the densities of all ways to choose it (balance heuristic). Beside the
+// `points` on surfaces, a cosine-weighted ray counts once, and in the environment as much again as all cosine-weighted
+// points together.
 vec3 sharedLight(TracedSurface v, EmitterRay to, uint points) {
   if (!to.there) return vec3(0.0);
   float cosine = cosineDensity(v, to.direction);
@@ -39,9 +45,10 @@ vec3 sharedLight(TracedSurface v, EmitterRay to, uint points) {
   return to.radiance * (cosine / (cosine * cosineWeighted + to.density));
 }
 
-// The part of a ray aimed at emissive surfaces and at the environment map: to one of several points, chosen by the
-// light that they send if nothing hides them (Talbot et al., "Importance Resampling for Global Illumination", EGSR
-// 2005). The points share out the emitters, and those of consecutive samples follow low-discrepancy sequences.
+// Adds the part of one ray aimed at emissive surfaces or at the environment map. It is aimed at one of `points` points,
+// chosen by the light that they would send without occlusion (Talbot et al., "Importance Resampling for Global
+// Illumination", EGSR 2005). The points share out the emitters, and those of consecutive samples (`index`) follow
+// low-discrepancy sequences.
 void addPoints(INOUT(NearLight) sum, TracedSurface v, uint points, uint stream, uint index) {
   float place = uniformFloat(hashCombine(stream, 0u) + index * kGoldenRatio);
   WeightedChoice choice = WeightedChoice(uniformFloat(hashCombine(stream, 1u) + index * kSilverRatio), 0.0, 0.0);
@@ -64,7 +71,9 @@ void addPoints(INOUT(NearLight) sum, TracedSurface v, uint points, uint stream, 
   if (isAnyChosen(choice)) add(sum, v, light * visibleShare(v, chosen) * inverseProbability(choice), chosen.direction);
 }
 
-// The light at v. Adjacent blocks, 4 x 4 of them, take turns in one sequence.
+// The light at v by one cosine-weighted ray and one aimed ray. block: the block of pixels that v stands for, as
+// adjacent ones, 4 x 4 of them, share one sequence; turn_: number of the sample; bounces: most reflections, at least 1;
+// points: as in addPoints().
 NearLight nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint points) {
   uvec2 group = block / 4u, place = block % 4u;
   uint order = (place.x & 1u) << 3 | (place.y & 1u) << 2 | (place.x & 2u) | place.y >> 1;

@@ -1,5 +1,6 @@
-// How surfaces reflect light, as scene::Reflection knows it on the host. Define: RAY_PASSAGE 0/1
-// (rays/trace.glsl), 1 with full materials.
+// How traced surfaces reflect light: diffuse ones, and with full materials a GGX lobe above the diffuse layer.
+//
+// Define: RAY_PASSAGE (rays/trace.glsl), 1 for full materials.
 #ifndef FOVEA_RAYS_REFLECTION_GLSL
 #define FOVEA_RAYS_REFLECTION_GLSL
 
@@ -9,7 +10,7 @@
 #include "materials/visible_normals.glsl"
 #endif
 
-// Irradiance from the scene's lights.
+// Irradiance from the lamps of the scene, W/m^2, with occlusion: traces a ray to each that faces v.
 vec3 irradianceAt(TracedSurface v) {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < frame.lightCount; ++i) {
@@ -21,20 +22,21 @@ vec3 irradianceAt(TracedSurface v) {
   return sum;
 }
 
-// Radiance that leaves v, whose reflectance is rho, after one reflection of light from the scene's lights.
+// Radiance that leaves v, whose diffuse reflectance is rho, after it has reflected the light of lamps, W/(sr m^2).
 vec3 diffuseLight(TracedSurface v, vec3 rho) { return rho / kPi * irradianceAt(v); }
 
 #if RAY_PASSAGE
 
-// How a surface reflects light in one direction. Coats are a part of the lobe, unlike on the host.
+// How a surface reflects light in one direction. A clear coat is part of the lobe.
 struct Reflection {
   Reflector reflector;
   vec3 albedo;  // of the diffuse layer, as it looks from there
-  vec3 emission;
+  vec3 emission;  // W/(sr m^2)
   float chooseDiffuse;  // probability with which sampleReflection() takes a direction for the diffuse layer
 };
 
-// out_: unit; rho: its reflectance, with diffuse materials; leastRoughness: v is treated as at least this rough.
+// How v reflects light in the direction `out_`, which is unit. rho: its diffuse reflectance, used with diffuse
+// materials alone; leastRoughness: v is treated as at least this rough.
 Reflection reflectionOf(TracedSurface v, vec3 out_, vec3 rho, float leastRoughness) {
   uvec4 triangle = sceneTriangle(v.triangle);
   vec3 weights = vec3(1.0 - v.weights.x - v.weights.y, v.weights), a = scenePosition(triangle.x);
@@ -53,7 +55,7 @@ Reflection reflectionOf(TracedSurface v, vec3 out_, vec3 rho, float leastRoughne
   return Reflection(r, s.albedo, s.emission, others / (others + max(lobe, 1e-3)));
 }
 
-// Light from a direction, which is unit, is reflected by this factor: f cos, per sr.
+// Radiance that is reflected for each unit of radiance from a direction, which is unit, and each sr: f cos.
 vec3 reflectedFrom(Reflection r, vec3 direction) {
   float cosine = dot(r.reflector.normal, direction);
   return cosine > 0.0 ? cosine * reflected(r.reflector, direction, r.albedo) : vec3(0.0);
@@ -71,7 +73,7 @@ float reflectionDensity(Reflection r, vec3 direction) {
   return mix(lobe, cosine / kPi, r.chooseDiffuse);
 }
 
-// A direction in which light may arrive, unit. choice, u: uniform in [0, 1).
+// A random direction from which light may arrive, unit, in world space. choice, u: uniform in [0, 1).
 vec3 sampleReflection(Reflection r, float choice, vec2 u) {
   if (choice < r.chooseDiffuse) return cosineDirection(r.reflector.normal, u);
   mat3 axes = orthonormalFrame(r.reflector.normal);
@@ -80,7 +82,7 @@ vec3 sampleReflection(Reflection r, float choice, vec2 u) {
   return toWorld(axes, normalize(2.0 * dot(out_, h) * h - out_));
 }
 
-// Radiance that leaves v after one reflection of light from the scene's lights.
+// Radiance that leaves v after it has reflected the light of lamps, W/(sr m^2), with occlusion.
 vec3 directLight(TracedSurface v, Reflection r) {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < frame.lightCount; ++i) {
@@ -92,8 +94,8 @@ vec3 directLight(TracedSurface v, Reflection r) {
   return v.brighter * sum;
 }
 
-// Radiance from v in the direction `out_` (unit), from where it is seen: emitted, or light of the scene's lights after
-// one reflection, as scene::SurfaceTracer::seen() finds it.
+// Radiance that v emits and reflects of the light of lamps in the direction `out_`, which is unit, W/(sr m^2). For
+// leastRoughness see reflectionOf().
 vec3 seenLight(TracedSurface v, vec3 out_, float leastRoughness) {
   Reflection r = reflectionOf(v, out_, vec3(0.0), leastRoughness);
   return v.brighter * r.emission + directLight(v, r);
@@ -109,7 +111,8 @@ vec3 directLight(TracedSurface v, Reflection r) { return diffuseLight(v, r.rho);
 
 #endif
 
-// The same in the direction `out_`; the parameters are those of reflectionOf().
+// Radiance that v reflects of the light of lamps in the direction `out_`, W/(sr m^2), with occlusion. For the arguments
+// see reflectionOf().
 vec3 directTowards(TracedSurface v, vec3 out_, vec3 rho, float leastRoughness) {
   if (frame.lightCount == 0u) return vec3(0.0);
   return directLight(v, reflectionOf(v, out_, rho, leastRoughness));

@@ -1,6 +1,9 @@
-// Rays through the triangles of the scene, as RayScene traces them on the host (framework/scene/rays/ray_scene.h). A
-// pass whose shader includes this declares that it traces rays. Define: RAY_PASSAGE 0/1, 1 for full materials, where
-// rays meet alphaMode BLEND everywhere and who traces decides whether they go on.
+// Rays through the triangles of the scene. Rays pass the holes of alpha masks.
+//
+// Define: RAY_PASSAGE 0/1, 1 for full materials, where rays hit surfaces of alphaMode BLEND and glass wherever these
+// are, and whoever traces decides whether they go on.
+//
+// Needs a pass that declares `rays`.
 #ifndef FOVEA_RAYS_TRACE_GLSL
 #define FOVEA_RAYS_TRACE_GLSL
 
@@ -13,22 +16,24 @@
 
 CONSTANT uint kNoTriangle = 0xffffffffu;
 
+// A part of a line.
 struct Ray {
   vec3 origin;     // world space, m
   vec3 direction;  // need not be unit; distances are multiples of its length
-  float near, far;
+  float near, far; // hits count between these distances
 };
 
+// What a ray meets.
 struct RayHit {
   uint triangle;   // kNoTriangle if nothing is met
-  float distance;
+  float distance;  // in lengths of the direction
   vec2 weights;    // barycentric, of the second and third vertex
 };
 
-// Smallest distance that keeps a ray that leaves a surface from hitting it again.
+// The distance that a ray must start off a surface, m, so as not to hit it again.
 float rayEpsilon() { return kRayEpsilon * max(distance(frame.boundsMin, frame.boundsMax), kLeastDiagonal); }
 
-// Whether a material is there at uv.
+// Whether a material has no hole at `uv`.
 bool solidAt(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   float cutoff = texelOf(sceneMaterials, first + 1).a;
@@ -38,13 +43,14 @@ bool solidAt(uint material, vec2 uv) {
   return materialReflectance(material, uv).a >= cutoff;
 }
 
+// Texture coordinates at a point of a triangle. weights: barycentric, of the second and third vertex.
 vec2 uvAt(uvec4 triangle, vec2 weights) {
   return sceneUv(triangle.x) * (1.0 - weights.x - weights.y) + sceneUv(triangle.y) * weights.x +
          sceneUv(triangle.z) * weights.y;
 }
 
-// The nearest hit, or any if that suffices: on the host by Embree or the project's own tracer, on the device through a
-// tree of bounding boxes.
+// trace() finds the nearest hit, or any if that suffices: on the host by Embree or the project's own tracer, on the device through
+// two trees of bounding boxes (rays/bvh.glsl).
 #ifdef __cplusplus
 RayHit trace(Ray ray, bool any) {
   RayHit hit = RayHit(kNoTriangle, ray.far, vec2(0.0));
@@ -55,6 +61,7 @@ RayHit trace(Ray ray, bool any) {
 #include "rays/bvh.glsl"
 #endif
 
+// The nearest hit of a ray, and whether there is any.
 RayHit intersect(Ray ray) { return trace(ray, false); }
 bool occluded(Ray ray) { return trace(ray, true).triangle != kNoTriangle; }
 

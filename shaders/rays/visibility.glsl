@@ -1,24 +1,26 @@
-// How much light passes along a ray. Define: RAY_PASSAGE 0/1, as in rays/trace.glsl.
+// How much light passes along a ray.
+//
+// Define: RAY_PASSAGE (rays/trace.glsl).
 #ifndef FOVEA_RAYS_VISIBILITY_GLSL
 #define FOVEA_RAYS_VISIBILITY_GLSL
 
 #include "materials/passage.glsl"
 #include "rays/trace.glsl"
 
+// The geometric normal of a triangle, world space, not normalised.
 vec3 faceNormal(uvec4 triangle) {
   vec3 a = scenePosition(triangle.x);
   return cross(scenePosition(triangle.y) - a, scenePosition(triangle.z) - a);
 }
 
-// A ray that continues from a surface which it passes.
+// The rest of a ray behind a hit that it passes.
 Ray beyond(Ray ray, RayHit hit) {
   ray.near = uintBitsToFloat(floatBitsToUint(hit.distance) + 1u) * (1.0 + 1e-6);
   return ray;
 }
 
-// The share of light that passes along the ray, by channels; the same as scene::visibility
-// (framework/scene/rays/visibility.h). rays: grows by the number of rays traced, one more for each surface that is
-// passed.
+// The share of light that passes along the ray, by channels: 0 or 1, and with full materials what BLEND and glass let
+// through. rays: grows by the number of rays traced, one more for each surface that is passed.
 vec3 visibility(Ray ray, INOUT(uint) rays) {
 #if RAY_PASSAGE
   vec3 share = vec3(1.0), direction = normalize(ray.direction);
@@ -44,6 +46,7 @@ vec3 visibility(Ray ray, INOUT(uint) rays) {
 #endif
 }
 
+// The same without counting.
 vec3 visibility(Ray ray) {
   uint rays = 0u;
   return visibility(ray, rays);

@@ -1,10 +1,11 @@
-// What the rays of pixels in contact have in common on the host and on the device (passes contact-rays-*).
+// Constants of pass contact-rays, and when two points count as lying on one plane.
 #pragma once
 
 #include "shared.h"
 
 SHARED_BEGIN(fovea::passes)
 
+// Keeps the random numbers of the rays apart from others.
 SHARED_CONSTANT uint kContactStream = 0x636f6e74u;
 SHARED_CONSTANT uint kContactSubsets = 4u;  // a pixel looks at one of so many subsets of the VPLs in a frame
 SHARED_CONSTANT float kContactRayEnd = 0.999f;  // rays end just before the VPL's surface
@@ -14,8 +15,8 @@ SHARED_CONSTANT float kTallyKept = 0.75f;  // share of the tallies that is kept 
 SHARED_CONSTANT float kMiddleWeight =
     2.0f;  // of the pixel in the middle of a row of three; the others have 1
 
-// Samples may share their light if their normals have at least this cosine, and the one is off the other's tangent plane
-// by at most this share of their distance (passes/same_plane.h).
+// Samples may share their light if the cosine between their normals exceeds the first, and if one is off the other's
+// tangent plane by at most the second times their distance (onSamePlane() in scene/same_surface.glsl).
 SHARED_CONSTANT float kSamePlaneCos = 0.9f;
 SHARED_CONSTANT float kSamePlaneSlope = 0.1f;
 

@@ -1,6 +1,5 @@
-// Light sources that rays are aimed at, as the host builds them (framework/scene/rays/emitters.h) and as shaders find
-// them in the texels of `rayEmitters` (rays/emitters.glsl): an EmitterHeader, the EmitterRecords, the
-// EmitterNodes, and the tables with which directions to the environment map are chosen.
+// The light sources that rays are aimed at (rays/emitters.glsl), in the texels of `rayEmitters`: an EmitterHeader, the
+// EmitterRecords, the EmitterNodes, and the tables by which directions to the environment map are chosen.
 #pragma once
 
 #include "shared.h"

@@ -20,8 +20,8 @@ SHARED_OFFSET(EyePathStart, face, 32)
 // All zeros mean that the path hits nothing.
 struct EyePathEnd {
   vec3 position SHARED_ZERO;  // world space, m
-  // 1 without direct light of lamps, 2 with it, 3 where the surface emits more than it reflects of that, 4 where
-  // emissive surfaces are about and it reflects more of other light than of that.
+  // 1 without direct light of lamps, 2 with it, 3 where the surface emits more than it reflects of that, 4 where the
+  // scene has emissive surfaces and it reflects more of other light than of lamps.
   float kind SHARED_ZERO;
   vec3 normal SHARED_ZERO;  // unit, on the side from which the path came
   // Number of cosine-weighted paths that this one stands for; 1 unless some paths are aimed at emissive surfaces.
@@ -32,7 +32,7 @@ struct EyePathEnd {
 SHARED_SIZE(EyePathEnd, 48)
 SHARED_OFFSET(EyePathEnd, radiance, 32)
 
-// ---- What passes eye-paths-host and eye-paths-device agree on, and what the latter keeps ----
+// ---- Constants of pass eye-paths, and what it keeps ----
 
 // Keep the random numbers of paths and of what their ends gather apart.
 SHARED_CONSTANT uint kEyePathStream = 0x70617468u, kPathGatherStream = 0x67617468u;
@@ -43,8 +43,8 @@ SHARED_CONSTANT float kStill = 0.25f;      // of a ray's epsilon: how far roundi
 SHARED_CONSTANT uint kAimedShare = 4u;     // where surfaces emit, one of this many paths is aimed at them
 // Share of points traced out of turn, in shares of light that has changed.
 SHARED_CONSTANT float kOutOfTurn = 2.0f;
-// How much more the square of an error weighs that all pixels share than one of noise: what is left of light that is
-// gone is seen more.
+// How much more the square of an error that all pixels share weighs than that of noise: light that should be gone is
+// noticed more.
 SHARED_CONSTANT float kBiasWeight = 16.0f;
 SHARED_CONSTANT float kRegained = 0.25f;   // share of what was lost that is regained in each frame
 SHARED_CONSTANT float kUsualKept = 0.75f;  // share of the usual change that is kept from frame to frame
@@ -52,11 +52,11 @@ SHARED_CONSTANT float kUsualKept = 0.75f;  // share of the usual change that is 
 SHARED_CONSTANT float kChannelSum =
     2147483648.0f;  // of the light of all ends in the brightest channel, in units
 
-// What the paths of a point do in a frame of the device.
+// What the paths of a point do in a frame.
 SHARED_CONSTANT uint kPathsAnew = 1u;  // they have another start than before
 SHARED_CONSTANT uint kPathsWait = 2u;  // it is not their turn
 
-// How much light a path finds now differs from what it found before.
+// By how much the light that a path finds now differs from what it found before.
 struct EyePathDifference {
   float changed SHARED_ZERO;  // without its sign
   float gained SHARED_ZERO;
@@ -65,7 +65,7 @@ struct EyePathDifference {
 };
 SHARED_SIZE(EyePathDifference, 16)
 
-// Kept on the device from frame to frame.
+// Kept from frame to frame.
 struct EyePathMemory {
   float usualChange SHARED_ZERO;  // largest change of the frames so far, forgotten in a few of them
   float lost SHARED_ZERO;         // z of the output `change`

@@ -1,12 +1,11 @@
-// The cells in which passes remember the light that rays have gathered, on the host
-// (passes/near-field/gather_cache.h) and on the device (rays/gather_cache.glsl).
+// The cells in which passes remember the light that rays have gathered (rays/gather_cache.glsl).
 #pragma once
 
 #include "shared.h"
 
 SHARED_BEGIN(fovea::scene)
 
-// A place in the table of cells on the device.
+// A place in the table of cells.
 struct GatherCell {
   vec3 light SHARED_ZERO;    // mean radiance over the hemisphere, W/(sr m^2)
   float weight SHARED_ZERO;  // number of samples that the mean is worth

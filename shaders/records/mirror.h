@@ -1,4 +1,4 @@
-// What passes reflections-host and reflections-device agree on, and which lobes they trace.
+// Constants of pass reflections, and which lobes it traces.
 #pragma once
 
 #include "shared.h"
@@ -8,7 +8,7 @@ SHARED_BEGIN(fovea::passes)
 // Keep the random numbers of rays from mirrors, and of what they gather, apart from others.
 SHARED_CONSTANT uint kMirrorStream = 0x6d697272u, kMirrorLightStream = 0x6d696c69u;
 
-// The code of a sample where nothing reflects; its bit 10 says that there is none.
+// The code of a sample where nothing reflects. Its bit 10 says so.
 SHARED_CONSTANT float kNoMirror = -1024.0f;
 
 // The share of the light under a lobe that rays find, and not VPLs, falls to 0 from these roughnesses on, over

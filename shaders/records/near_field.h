@@ -1,4 +1,4 @@
-// What passes near-field-host and near-field-device agree on, and what the latter keeps.
+// Constants of pass near-field, and what it keeps.
 #pragma once
 
 #include "shared.h"
@@ -19,7 +19,7 @@ SHARED_CONSTANT float kTileMiddleWeight =
 SHARED_CONSTANT float kLengthKept = 0.875f;   // share of the mean ray length kept from frame to frame
 SHARED_CONSTANT float kNearCellWidth = 0.1f;  // width of the cache's cells, in mean ray lengths
 
-// What the device keeps from frame to frame.
+// Kept from frame to frame.
 struct NearFieldState {
   float meanLength SHARED_ZERO;  // m, of the rays so far; 0 as long as none has met anything
   float area SHARED_ZERO;        // of a VPL's disc, m^2; 0: only the length is found

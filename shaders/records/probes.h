@@ -1,4 +1,5 @@
-// A grid of probes that hold the light and the distances around them: the bundles `probe-rays` and `probes` (shaders/probes).
+// A grid of probes that hold the light and the distances around them: the bundles `probe-rays` and `probes`
+// (shaders/probes).
 #pragma once
 
 #include "shared.h"
@@ -17,7 +18,7 @@ struct ProbeGrid {
 SHARED_SIZE(ProbeGrid, 32)
 SHARED_OFFSET(ProbeGrid, columns, 16)
 
-// What all zeros stand for is a probe that has just been put into its cell and knows nothing.
+// The state of a probe. All zeros stand for one that has just been put into its cell and knows nothing.
 struct Probe {
   vec3 offset SHARED_ZERO;     // from the centre of its cell, m
   float frames SHARED_ZERO;    // for which it has stood there and gathered light
@@ -29,8 +30,9 @@ struct Probe {
 SHARED_SIZE(Probe, 32)
 SHARED_OFFSET(Probe, inside, 16)
 
-// A probe has a square tile in each of two images, in which directions lie in octahedral encoding; around it is a
-// border of one texel with what lies beyond the edges, so that neighbours of a texel are found without leaving the tile.
+// A probe has a square tile in each of two images, in which directions lie in octahedral encoding. Around it is a
+// border of one texel with what lies beyond the edges, so that the neighbours of a texel are found without leaving the
+// tile.
 SHARED_CONSTANT int kProbeTilesInARow = 64;
 SHARED_CONSTANT int kIrradianceSide = 6;  // texels without the border
 SHARED_CONSTANT int kDistanceSide = 14;

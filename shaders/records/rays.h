@@ -1,5 +1,4 @@
-// The bounding volume hierarchies of a scene, as rays meet them on the host (framework/scene/rays/bvh.h) and on the
-// device (rays/trace.glsl).
+// The bounding volume hierarchies of a scene, and constants of rays (shaders/rays).
 #pragma once
 
 #include "shared.h"
@@ -20,7 +19,7 @@ SHARED_OFFSET(BvhNode, high, 16)
 SHARED_CONSTANT uint kBvhLeaf = 4u;    // most triangles of a leaf
 SHARED_CONSTANT uint kBvhDepth = 72u;  // more levels than any tree has
 
-// Where the roots of the two trees are on the device: that of the triangles that never move, and that of all others.
+// Where the roots of the two trees are in `rayNodes`: that of the triangles that never move, and that of all others.
 // Place 0 is empty, so that 0 can stand for no children.
 SHARED_CONSTANT uint kBvhStill = 1u, kBvhMoving = 2u, kBvhTops = 3u;
 
@@ -42,7 +41,7 @@ SHARED_CONSTANT uint kAimedRayStream = 0x656d6974u, kPassedRayStream = 0x7261797
 SHARED_CONSTANT uint kLobeStream = 0x6c6f6265u;
 
 // The least roughness with which surfaces reflect light towards those that the eye sees, and towards others. With less,
-// single paths are bright spots.
+// single paths show as bright spots.
 SHARED_CONSTANT float kBounceRoughness = 0.3f, kGatheredRoughness = 0.5f;
 
 SHARED_END

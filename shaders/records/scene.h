@@ -6,6 +6,7 @@
 
 SHARED_BEGIN(fovea::scene)
 
+// What belongs to a frame: `frame` in shaders.
 struct FrameBlock {
   uint index SHARED_ZERO;  // frame number in the sequence
   uint seed SHARED_ZERO;
@@ -14,12 +15,12 @@ struct FrameBlock {
   uint staticTriangleCount SHARED_ZERO;
   uint vertexCount SHARED_ZERO;
   float time SHARED_ZERO;  // s
-  float exposure SHARED_ZERO;
+  float exposure SHARED_ZERO;  // factor on radiance before the display curve
   vec3 boundsMin SHARED_ZERO;  // world space, m
   float unused0 SHARED_ZERO;
   vec3 boundsMax SHARED_ZERO;
   float unused1 SHARED_ZERO;
-  vec3 environment SHARED_ZERO;          // radiance where nothing is hit, without an environment map
+  vec3 environment SHARED_ZERO;          // radiance of the background without an environment map, W/(sr m^2)
   float environmentTurn SHARED_ZERO;     // radians by which the map is turned about +Y
   uint firstMovingVertex SHARED_ZERO;    // vertices below it never move
   uint firstMovingTriangle SHARED_ZERO;  // of the triangles used for voxels and VPL maps
@@ -36,15 +37,16 @@ SHARED_SIZE(FrameBlock, 112)
 SHARED_OFFSET(FrameBlock, boundsMin, 32)
 SHARED_OFFSET(FrameBlock, firstMovingVertex, 80)
 
+// What belongs to the eye: `view` in shaders.
 struct ViewBlock {
   mat4 worldToView SHARED_ZERO;
   mat4 viewToClip SHARED_ZERO;
   mat4 worldToClip SHARED_ZERO;
   mat4 clipToWorld SHARED_ZERO;
   mat4 previousWorldToClip SHARED_ZERO;
-  vec3 eye SHARED_ZERO;  // world space
+  vec3 eye SHARED_ZERO;  // world space, m
   float unused0 SHARED_ZERO;
-  vec2 gaze SHARED_ZERO;         // normalised, origin top-left
+  vec2 gaze SHARED_ZERO;         // in picture sizes from the top left corner, (0.5, 0.5) in the middle
   vec2 jitterStep SHARED_ZERO;   // pixels: by how much View::jitter has changed since the last frame
   vec2 size SHARED_ZERO;         // pixels
   vec2 inverseSize SHARED_ZERO;  // 1 / pixels
@@ -56,12 +58,13 @@ SHARED_CONSTANT uint kMaxLights = 128u;
 
 SHARED_CONSTANT uint kLightDirectional = 0u, kLightPoint = 1u, kLightSpot = 2u;  // LightRecord::type
 
+// A lamp, as KHR_lights_punctual has it: an element of `lights`.
 struct LightRecord {
-  vec3 position SHARED_ZERO;  // world
+  vec3 position SHARED_ZERO;  // world space, m
   uint type SHARED_ZERO;
   vec3 direction SHARED_ZERO;  // unit, the way light travels
   float range SHARED_ZERO;     // m, 0 unlimited
-  vec3 intensity SHARED_ZERO;  // rgb: lux or candela
+  vec3 intensity SHARED_ZERO;  // candela, taken as W/sr; directional: lux, taken as W/m^2
   uint firstShadowLayer SHARED_ZERO;
   float cosInner SHARED_ZERO;
   float cosOuter SHARED_ZERO;
@@ -79,8 +82,8 @@ struct TransformRows {
 };
 SHARED_SIZE(TransformRows, 48)
 
-// An object's own space is that of its mesh. Object 0 holds everything that never moves; its own space is the world's.
-// The same as scene::ObjectTransform. Ten texels of `sceneObjects`.
+// An object (scene/objects.glsl). Its own space is that of its mesh. Object 0 holds everything that never moves; its
+// own space is the world's. Ten texels of `sceneObjects`.
 struct ObjectRecord {
   TransformRows toWorld;
   TransformRows previousToWorld;  // of the last frame
@@ -143,8 +146,8 @@ SHARED_CONSTANT uint kPassageTurn = 2654435769u, kPassageTurns = 149464861u;
 
 // What only they need follows the MaterialRecords in `sceneMaterials`, if any pass asks for it.
 
-// The rest of scene::Material; factors of the textures. Base colour and emission have the textures of MaterialRecord.
-// 25 texels.
+// The factors and textures of a full material beside those of MaterialRecord, whose textures for base colour and
+// emission it shares. 25 texels.
 struct SurfaceRecord {
   vec3 baseColor SHARED_ZERO;
   float metallic SHARED_ZERO;
@@ -170,13 +173,14 @@ SHARED_SIZE(SurfaceRecord, 400)
 SHARED_OFFSET(SurfaceRecord, roughness, 32)
 SHARED_OFFSET(SurfaceRecord, metallicRoughnessTexture, 64)
 
-// Tables of scene::AlbedoTable: kAlbedoSide rows of as many texels, which are the albedo of a perfect mirror and the
-// part of it that Fresnel's curve gives to F90 for metals and for dielectrics with an index of refraction of 1.5; then
-// a row of its means over the directions.
+// Tables of albedos by the square root of the cosine (columns) and the roughness (rows): kAlbedoSide rows of as many
+// texels, which are the albedo of a perfect mirror and the part of it that Fresnel's curve gives to F90 for metals and
+// for dielectrics with an index of refraction of 1.5; then a row of its means over the directions.
 SHARED_CONSTANT uint kAlbedoSide = 48u;
 SHARED_CONSTANT float kAlbedoLeastRoot = 0.02f;  // square root of the cosine of the first column
 
-// The same as scene::TriangleTangents. Three texels.
+// The tangents at the corners of a triangle, by its edges and its normal (cornerTangent() in
+// materials/full_material.glsl). Three texels.
 struct TangentRecord {
   vec3 corner0 SHARED_ZERO;
   float bitangentSign SHARED_ZERO;

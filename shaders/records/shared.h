@@ -33,7 +33,7 @@ using uint = uint32_t;
 #define SHARED_DEFAULT(value) \
   { value }
 #define SHARED_ZERO SHARED_DEFAULT(0)
-// Bytes of a record, and the place of a member in it.
+// Checks the bytes of a record, and the place of a member in it, in C++.
 #define SHARED_SIZE(record, bytes) static_assert(sizeof(record) == (bytes));
 #define SHARED_OFFSET(record, member, bytes) static_assert(offsetof(record, member) == (bytes));
 

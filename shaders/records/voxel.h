@@ -7,7 +7,7 @@ SHARED_BEGIN(fovea::scene)
 
 // Cubic cells, `resolution` of them along the longest axis of the scene's bounds; the volume is a cube of cells.
 struct VoxelGrid {
-  vec3 origin SHARED_ZERO;       // world space, corner of cell (0, 0, 0)
+  vec3 origin SHARED_ZERO;       // world space, m, corner of cell (0, 0, 0)
   float cell SHARED_DEFAULT(1);  // edge, m
   int resolution SHARED_DEFAULT(1);
 
@@ -24,7 +24,7 @@ SHARED_CONSTANT uint kNoSide = 0xffffffffu;  // in place of the number of a side
 
 // One side of a voxel: averages over the surface in it.
 struct VoxelSide {
-  vec3 position SHARED_ZERO;  // world space
+  vec3 position SHARED_ZERO;  // world space, m
   float area SHARED_ZERO;     // m^2 of surface; 0 if the side is empty
   vec3 normal SHARED_ZERO;    // unit
   float object SHARED_ZERO;
@@ -37,6 +37,7 @@ struct VoxelSide {
 SHARED_SIZE(VoxelSide, 64)
 SHARED_OFFSET(VoxelSide, emission, 48)
 
+// Sizes of the list of voxels.
 struct VoxelInfo {
   uint voxels SHARED_ZERO;        // in the list
   uint staticVoxels SHARED_ZERO;  // number of the leading static ones
@@ -59,6 +60,7 @@ SHARED_CONSTANT float kOwnSurface = 0.25f;
 SHARED_CONSTANT float kBehindPlane = 0.1f;
 SHARED_CONSTANT float kSideRadii = 1.5f;
 
+// What a ray meets.
 struct VoxelHit {
   uint side SHARED_DEFAULT(kNoSide);  // kNoSide if the ray leaves the grid
   float distance SHARED_ZERO;         // along the ray to the side's plane, kept within the voxel, m

@@ -1,6 +1,6 @@
-// Vertices of moving geometry, one per invocation: morph targets, then joints or the object's transform, with the
-// same sums in the same order as scene::placeVertices (framework/scene/motion/deform.h). Points of subdivision cages
-// go to a buffer of their own, from which the stencils make vertices.
+// Vertices of moving geometry, one per invocation: morph targets, then joints or the object's transform, by the same
+// operations in the same order as placeVertices() in framework/scene/motion/deform.h, which moves them for passes on
+// the host. Points of subdivision cages go to a buffer of their own, of which subdivide.comp makes vertices.
 #include "scene/octahedral.glsl"
 
 layout(local_size_x = 64) in;
@@ -35,7 +35,7 @@ mat4x3 rowsAt(uint texel) {
 
 float weightAt(uint i) { return texelFetch(poses, int(firstWeight + i / 4u))[i % 4u]; }
 
-// Cofactors, as in scene::placeVertices, so that normals are also correct for transforms that flatten an object.
+// Cofactors instead of the inverse transpose, so that normals are also correct for transforms that flatten an object.
 mat3 normalMatrix(mat4x3 m) {
   mat3 a = mat3(m);
   return (determinant(a) < 0.0 ? -1.0 : 1.0) * mat3(cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1]));

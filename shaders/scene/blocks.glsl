@@ -1,15 +1,18 @@
-// Blocks of pixels that share a sample (passes/near-field/near_field_tracer.h): tiles of `spacing` x `spacing`
-// pixels, and texels of 2 x 2 pixels in them.
+// Blocks of pixels that share a sample in pass near-field: tiles of `spacing` x `spacing` pixels, and texels of 2 x 2
+// pixels in them.
 #ifndef FOVEA_BLOCKS_GLSL
 #define FOVEA_BLOCKS_GLSL
 
 #include "scene/scene.glsl"
 
+// Size of the view in pixels, in texels and in tiles.
 uvec2 viewSize() { return uvec2(view.size); }
 uvec2 texelCount() { return (viewSize() + 1u) / 2u; }
 uvec2 tileCount(uint spacing) { return (viewSize() + spacing - 1u) / spacing; }
 
-// The pixel whose turn it is in a block; the same as passes::samplePixel().
+// The pixel whose turn it is in a block, relative to its corner. turn_: grows by 1 from sample to sample, and after
+// side^2 of them all pixels have had a turn; side: pixels per side of the block, a power of two; block: its number in x
+// and y, by which neighbours take their turns in different orders.
 uvec2 samplePixel(uint turn_, uint side, uvec2 block) {
   turn_ += (block.x & 1u) * 2u ^ (block.y & 1u) * 3u;
   uvec2 p = uvec2(0u);

@@ -1,9 +1,11 @@
-// Colours for values in debug images. Needs scene/scene.glsl.
+// Colours for values in debug images.
+//
+// Needs scene/scene.glsl.
 #ifndef FOVEA_COLOUR_MAP_GLSL
 #define FOVEA_COLOUR_MAP_GLSL
 
-// Maps 0 to 1 to dark violet, blue, green and yellow. Brightness rises evenly, so the map can be read without colour
-// vision too (the knots are every eighth of matplotlib's viridis, sRGB).
+// The display colour (sRGB) of a value from 0 to 1: dark violet, blue, green, yellow. Brightness rises evenly, so that
+// the map can be read without colour vision, too. The knots are every eighth of matplotlib's viridis.
 vec3 colourMap(float x) {
   const vec3 knots[9] = vec3[9](vec3(0.267, 0.005, 0.329), vec3(0.283, 0.141, 0.458), vec3(0.230, 0.299, 0.537),
                                 vec3(0.173, 0.449, 0.558), vec3(0.127, 0.567, 0.551), vec3(0.158, 0.684, 0.502),

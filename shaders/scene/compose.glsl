@@ -1,7 +1,11 @@
-// A complete fragment shader for the passes that end in an image: the irradiance of each pixel times its reflectance,
-// plus direct light if HAS_DIRECT is 1. GLOSS is above 0 for full materials, whose surfaces reflect light beside their
-// diffuse layer: with 1 that of `gloss`, with 2, for want of it, that of `irradiance`. With REFLECTIONS 1, smooth
-// surfaces reflect `reflections` instead.
+// A complete fragment shader for passes that end in an image: the irradiance of each pixel times its reflectance, plus
+// direct light. Outputs: `indirect` without, `radiance` with direct light, W/(sr m^2).
+//
+// Define: HAS_DIRECT 0/1, 1 adds the port `direct`; GLOSS, 0 for diffuse materials, 1 where the lobe of full materials
+// reflects the port `gloss`, 2 where it reflects `irradiance` for want of that; REFLECTIONS 0/1, 1 where smooth
+// surfaces reflect the port `reflections` instead.
+//
+// Needs the ports `gbuffer` and `irradiance`.
 #if GLOSS
 #include "materials/gloss.glsl"
 #endif
@@ -26,6 +30,7 @@ layout(rgba16f) uniform readonly image2D direct;
 layout(location = 0) out vec4 indirect;
 layout(location = 1) out vec4 radiance;
 
+// The whole shader.
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
 #if GLOSS

@@ -4,7 +4,8 @@
 
 #include "scene/objects.glsl"
 
-// How a point of a triangle whose vertices move has moved since the previous frame, m in world space.
+// By how much a point of a triangle whose vertices move individually has moved since the previous frame, m in world
+// space. position: in this frame; triangle: as sceneTriangle() returns it.
 vec3 movedSince(vec3 position, uvec4 triangle) {
   mat3 now = mat3(scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z));
   mat3 before = mat3(scenePreviousPosition(triangle.x), scenePreviousPosition(triangle.y),
@@ -16,13 +17,14 @@ vec3 movedSince(vec3 position, uvec4 triangle) {
   return (now - before) * vec3(1.0 - weights.x - weights.y, weights);
 }
 
-// How a surface has moved since the previous frame: what moves along with it was at turn * point + way.
+// How a surface has moved since the previous frame: a point that moves along with it was at turn * point + way, m in
+// world space.
 struct Motion {
   mat3 turn;
   vec3 way;
 };
 
-// id, triangle: of the G-buffer at `position`.
+// The motion of what the G-buffer shows at `position` (world space, m). id, triangle: from there.
 Motion motionOf(vec3 position, uint id, uint triangle) {
   uint object = id >> 16;
   Motion motion = Motion(mat3(1.0), vec3(0.0));
@@ -36,6 +38,7 @@ Motion motionOf(vec3 position, uint id, uint triangle) {
   return motion;
 }
 
+// Where a point, which moves along with the surface, was in the previous frame; world space, m.
 vec3 pointBefore(Motion motion, vec3 point) { return motion.turn * point + motion.way; }
 
 #endif

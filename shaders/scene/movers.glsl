@@ -1,5 +1,7 @@
-// Boxes around everything that moves, in this frame and the last one (scene::MoverBoxes). A box with low > high is
-// unused. Define: MOVER_BOXES, scene::MoverBoxes::kCount.
+// Boxes around everything that moves, in this frame and the previous one. A box whose low corner exceeds its high one
+// is unused.
+//
+// Define: MOVER_BOXES, their number (scene::MoverBoxes::kCount).
 #ifndef FOVEA_MOVERS_GLSL
 #define FOVEA_MOVERS_GLSL
 

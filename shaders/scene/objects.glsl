@@ -1,12 +1,15 @@
-// Transforms of the scene's objects, and points that move with them.
+// Transforms of the scene's objects, and points that move with them. An object's own space is that of its mesh. Object
+// 0 holds everything that never moves, and its own space is the world's.
 #ifndef FOVEA_OBJECTS_GLSL
 #define FOVEA_OBJECTS_GLSL
 
 #include "scene/scene.glsl"
 
-// The coordinates of a point in an object's own space (VplState.localPosition) stay valid while the object moves.
+// Texels of an ObjectRecord in `sceneObjects`.
 const int kObjectTexels = 10;
 
+// Transforms of points, m: from the object to the world in this frame and in the previous one, and from the world to
+// the object, all 0 if there is no inverse. row: texel of the record at which a transform starts.
 mat4x3 objectRows(uint object, int row) {
   int i = int(object) * kObjectTexels + row;
   return transpose(mat3x4(texelOf(sceneObjects, i), texelOf(sceneObjects, i + 1), texelOf(sceneObjects, i + 2)));
@@ -14,26 +17,29 @@ mat4x3 objectRows(uint object, int row) {
 mat4x3 objectTransform(uint object) { return objectRows(object, 0); }
 mat4x3 previousObjectTransform(uint object) { return objectRows(object, 3); }
 mat4x3 inverseObjectTransform(uint object) { return objectRows(object, 6); }
+// Whether the object is shown in this frame, and in the previous one.
 bool objectVisible(uint object) { return texelOf(sceneObjects, int(object) * kObjectTexels + 9).x > 0.5; }
 bool objectWasVisible(uint object) { return texelOf(sceneObjects, int(object) * kObjectTexels + 9).y > 0.5; }
 
-// The vertices of the object move individually (morph targets, joints), so a point keeps its place
-// in a triangle instead.
+// Whether the vertices of the object move individually (morph targets, joints). A point of its surface then keeps its
+// place in a triangle and not in the object's space.
 bool objectDeforms(uint object) { return texelOf(sceneObjects, int(object) * kObjectTexels + 9).z > 0.5; }
 
+// Points from and to an object's own space, m. Coordinates there stay valid while the object moves
+// (VplState::localPosition).
 vec3 fromObject(uint object, vec3 position) { return objectTransform(object) * vec4(position, 1.0); }
 vec3 toObject(uint object, vec3 position) { return inverseObjectTransform(object) * vec4(position, 1.0); }
-// Unit normals, also for non-uniform scales.
+// Unit normals from and to an object's own space, also for non-uniform scales.
 vec3 normalFromObject(uint object, vec3 n) { return normalize(transpose(mat3(inverseObjectTransform(object))) * n); }
 vec3 normalToObject(uint object, vec3 n) { return normalize(transpose(mat3(objectTransform(object))) * n); }
 
 // ---- Points of surfaces that deform -------------------------------------------------------------------------------
 
-// A point keeps its place in a triangle of those used for voxels: the triangle's number past frame.firstMovingTriangle
-// (exact as a float below 2^24) and the weights of its second and third vertex. A direction keeps its components
-// along the triangle's axes.
+// A point keeps its place in a triangle. x: the number of the triangle past frame.firstMovingTriangle (exact as a float
+// below 2^24); y, z: weights of its second and third vertex. A direction keeps its components along triangleAxes().
 
-// The point of the triangle that is nearest to `position` (Ericson 2005, 5.1.5).
+// The place in the triangle that is nearest to `position`, world space, m (Ericson, "Real-Time Collision Detection",
+// 2005, 5.1.5). triangle: past frame.firstMovingTriangle.
 vec3 attach(uint triangle, vec3 position) {
   uvec4 t = sceneTriangle(frame.firstMovingTriangle + triangle);
   vec3 a = scenePosition(t.x), ab = scenePosition(t.y) - a, ac = scenePosition(t.z) - a, ap = position - a;
@@ -51,13 +57,14 @@ vec3 attach(uint triangle, vec3 position) {
   return c2 <= e2 ? vec3(triangle, 0.0, onC) : vec3(triangle, 1.0 - onEdge, onEdge);
 }
 
+// Where a place is in this frame, world space, m.
 vec3 attachedPosition(vec3 place) {
   uvec4 t = sceneTriangle(frame.firstMovingTriangle + uint(place.x));
   vec3 a = scenePosition(t.x);
   return a + place.y * (scenePosition(t.y) - a) + place.z * (scenePosition(t.z) - a);
 }
 
-// Unit columns: along the first edge, across it in the plane, and the normal.
+// Axes of a triangle, as unit columns: along its first edge, across that in its plane, and its normal.
 mat3 triangleAxes(uint triangle) {
   uvec4 t = sceneTriangle(frame.firstMovingTriangle + triangle);
   vec3 a = scenePosition(t.x), edge = scenePosition(t.y) - a, n = cross(edge, scenePosition(t.z) - a);

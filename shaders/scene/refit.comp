@@ -1,5 +1,5 @@
-// The boxes of one level of a bounding volume hierarchy from this frame's vertices, one node per invocation; the boxes
-// of the level below are those of this frame already.
+// The boxes of one level of a bounding volume hierarchy from this frame's vertices, one node per invocation. The boxes
+// of the level below are already those of this frame.
 #include "records/rays.h"
 
 layout(local_size_x = 64) in;

@@ -1,5 +1,5 @@
-// The nodes of the tree of emitters from this frame's vertices, one for each group, whose invocations share the emitters
-// of the node; their order in the tree stays.
+// The nodes of the tree of emitters from this frame's vertices, one node per work group, whose invocations share its
+// emitters. Their order in the tree stays.
 #include "records/emitters.h"
 
 layout(local_size_x = 64) in;
@@ -64,7 +64,7 @@ void main() {
   uint node = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   uvec2 range = node > 0u && node < nodes ? rangeOf(node) : uvec2(0u);
   if (range.x == range.y) return;  // all invocations of the group do
-  // Axis and power; corners, and whether all emitters shine to one side only.
+  // Axis and power; corners, and whether all emitters emit to one side only.
   vec4 sum = vec4(0.0), low = vec4(vec3(kFarthest), 1.0), high = vec4(-kFarthest);
   for (uint i = range.x + gl_LocalInvocationID.x; i < range.y; i += kGroup) {
     Emitter e = emitterAt(i);

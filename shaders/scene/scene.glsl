@@ -1,4 +1,5 @@
-// Descriptor set 1: frame, view, lights and the scene's world-space triangles, the same for every pass of a frame.
+// The scene: `frame`, `view` and `lights` (records/scene.h), geometry, diffuse materials, the environment and lights.
+// All of it is descriptor set 1, the same for every pass of a frame (scene/tables.glsl).
 #ifndef FOVEA_SCENE_GLSL
 #define FOVEA_SCENE_GLSL
 
@@ -12,14 +13,16 @@ float diagonal() { return max(distance(frame.boundsMin, frame.boundsMax), 1e-30)
 
 // ---- Geometry ----------------------------------------------------------------------------------------------------
 
+// Material and object of a triangle, as sceneTriangle() returns it.
 uint materialOf(uvec4 triangle) { return triangle.w & 0xffffu; }
 uint objectOf(uvec4 triangle) { return triangle.w >> 16; }
 
 // ---- Materials ---------------------------------------------------------------------------------------------------
 
-// Texels of a material and of its textures in it.
+// Texels of a MaterialRecord in `sceneMaterials`, and at which of them its textures start.
 CONSTANT int kMaterialTexels = 8, kColorTexture = 2, kEmissionTexture = 5;
 
+// The factors of a material, without its textures.
 struct Material {
   vec3 baseColor;        // times (1 - metallic): diffuse reflectance where the texture is white
   float alpha;
@@ -28,11 +31,12 @@ struct Material {
   bool doubleSided;
 };
 
-struct SurfacePoint {    // a material looked up at a point
+struct SurfacePoint {    // a material looked up at a point; diffuse reflectance, and radiance in W/(sr m^2)
   vec3 reflectance;
   vec3 emission;
 };
 
+// The factors of a material by its number.
 Material loadMaterial(uint material) {
   int first = int(material) * kMaterialTexels;
   vec4 color = texelOf(sceneMaterials, first);
@@ -41,8 +45,9 @@ Material loadMaterial(uint material) {
   return Material(vec3(color), color.a, vec3(emission), emission.a, (flags & kMaterialDoubleSided) != 0u);
 }
 
-// Divides floats, and twice because the first quotient may be rounded. A CPU device divides integers one
-// lane at a time.
+// The texel of a texture of `size` texels in a row that coordinate `i` stands for. wrap: 0 repeats, kWrapClamp,
+// kWrapMirror. Divides floats, as a CPU device divides integers one lane at a time, and twice because the first
+// quotient may be rounded.
 int wrapTexel(int i, int size, uint wrap) {
   if (wrap == kWrapClamp) return clamp(i, 0, size - 1);
   int period = wrap == kWrapMirror ? 2 * size : size;
@@ -52,8 +57,8 @@ int wrapTexel(int i, int size, uint wrap) {
   return r < size ? r : period - 1 - r;
 }
 
-// Bilinear filtering at LOD 0, with texels decoded before they are filtered; the same as scene::sampleTexture.
-// `texel` is the first of the three texels that describe the texture.
+// A texture at `uv`, as linear light: filtered bilinearly at level 0, after texels have been decoded. texel: the first
+// of the three texels that describe the texture (TextureRecord). White if there is none.
 vec4 sampleSceneTexture(int texel, vec2 uv) {
   vec4 place = texelOf(sceneMaterials, texel);
   if (place.x < 0.0) return vec4(1.0);
@@ -74,12 +79,13 @@ vec4 sampleSceneTexture(int texel, vec2 uv) {
   return mix(top, bottom, f.y);
 }
 
-// rgb: diffuse reflectance, a: alpha.
+// A material at `uv`, with its textures. rgb: diffuse reflectance, a: alpha.
 vec4 materialReflectance(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   return texelOf(sceneMaterials, first) * sampleSceneTexture(first + kColorTexture, uv);
 }
 
+// The radiance that a material emits at `uv`, W/(sr m^2).
 vec3 materialEmission(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   vec3 emission = vec3(texelOf(sceneMaterials, first + 1));
@@ -89,15 +95,18 @@ vec3 materialEmission(uint material, vec2 uv) {
   return emission;
 }
 
+// Reflectance and emission of a material at `uv`.
 SurfacePoint surfaceAt(uint material, vec2 uv) {
   return SurfacePoint(vec3(materialReflectance(material, uv)), materialEmission(material, uv));
 }
 
 // ---- Environment -------------------------------------------------------------------------------------------------
 
+// Whether an environment map lights the scene; if not, the background is frame.environment.
 bool hasEnvironmentMap() { return environmentSize().x > 1; }
 
-// Radiance of the environment map from a direction, which is unit; the same as scene::EnvironmentMap::radiance.
+// Radiance that arrives from the environment map, W/(sr m^2), filtered bilinearly. direction: unit, away from the
+// scene.
 vec3 environmentRadiance(vec3 direction) {
   ivec2 size = environmentSize();
   float around = (atan(direction.x, -direction.z) + frame.environmentTurn) / (2.0 * kPi) + 0.5;
@@ -115,6 +124,7 @@ vec3 environmentRadiance(vec3 direction) {
 
 // ---- Lights ------------------------------------------------------------------------------------------------------
 
+// What a light sends to a point.
 struct LightSample {
   vec3 irradiance;  // on a surface that faces the light, W/m^2, without occlusion
   vec3 direction;   // unit, to the light
@@ -123,7 +133,8 @@ struct LightSample {
 
 CONSTANT float kFarAway = 1e30;
 
-// The same as scene::sampleLight (framework/scene/lights.h).
+// position: of the point, world space, m. Units and falloff are those of KHR_lights_punctual (passes/README.md, Light
+// units and fairness).
 LightSample sampleLight(LightRecord light, vec3 position) {
   if (light.type == kLightDirectional) return LightSample(light.intensity, -light.direction, kFarAway);
   vec3 d = light.position - position;

@@ -1,5 +1,5 @@
-// Vertices of a subdivision surface from this frame's points of its cage: limit position and normal by stencils
-// (framework/scene/subdivision/subdivision.h), the same sums in the same order as scene::Stencils::evaluate.
+// Vertices of a subdivision surface from this frame's points of its cage: limit position and normal by stencils, by the
+// same operations in the same order as Stencils::evaluate() in framework/scene/subdivision/subdivision.h.
 #include "scene/octahedral.glsl"
 
 layout(local_size_x = 64) in;

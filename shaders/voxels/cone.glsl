@@ -1,7 +1,10 @@
-// Cone tracing through the bundle "voxel-mips" (pass mipmap), and the light that arrives over a hemisphere. Needs
-// scene/scene.glsl and an input port `mips` (Usage::Sampled). Shaders that need the weights together with the light
-// define CONE_WEIGHT. gatherHemisphere additionally needs CONE_GATHER to be defined, the input ports of
-// voxels/voxel_trace.glsl and a texel buffer `radiance`.
+// Cone tracing through the bundle `voxel-mips` (pass mipmap), and the light that arrives over a hemisphere (Crassin et
+// al., "Interactive Indirect Illumination Using Voxel Cone Tracing", 2011).
+//
+// Define: CONE_WEIGHT, if the weights are needed beside the light; CONE_GATHER, if gatherHemisphere() is.
+//
+// Needs scene/scene.glsl and the port `mips` (Usage::Sampled); with CONE_GATHER also the ports of
+// voxels/voxel_trace.glsl and the port `radiance`, a buffer of one vec4 for each voxel side.
 #ifndef FOVEA_CONE_GLSL
 #define FOVEA_CONE_GLSL
 
@@ -23,6 +26,7 @@ struct MipGrid {
   bool faces;    // six faces side by side in x; if false, one volume
 };
 
+// The mips of the port `mips` over a voxel grid.
 MipGrid mipGrid(VoxelGrid grid) {
   ivec3 size = textureSize(mipsColor, 0);
   return MipGrid(grid.origin, 2.0 * grid.cell, size.y, findLSB(size.y) + 1, size.x > size.y);
@@ -39,6 +43,8 @@ struct ConeSample {
   float weight;  // also times the coverage; 0 without CONE_WEIGHT
 };
 
+// A filtered texel of one face. at: place in the grid, from 0 to 1; face: its number; faceCount: 6, or 1 if there is
+// one volume.
 ConeSample mipFetch(vec3 at, float face, float faceCount, float level) {
   vec3 uvw = vec3((face + at.x) / faceCount, at.yz);
   ConeSample s;
@@ -51,7 +57,8 @@ ConeSample mipFetch(vec3 at, float face, float faceCount, float level) {
   return s;
 }
 
-// Samples the surfaces that face `direction` around p (cells of level 0), interpolated between levels.
+// The surfaces around p (cells of level 0) that face the direction of a ray, which is unit, interpolated between
+// levels.
 ConeSample sampleMips(MipGrid grid, vec3 p, vec3 direction, float level) {
   float size = float(grid.size);
   float half_ = 0.5 * exp2(ceil(level)) / size;
@@ -70,10 +77,10 @@ ConeSample sampleMips(MipGrid grid, vec3 p, vec3 direction, float level) {
 const float kConeStep = 0.5;  // in cells of the level
 const int kConeTurns = 512;
 
-// Traces a cone front to back. origin, start: cells of level 0; growth: width of the filter's cells relative to the
-// distance. The filter has to widen smoothly: if it jumped from one level to the next in front of a wall, the part of
-// the wall that the fine level has not shown yet and the coarse one no longer shows would be lost. Returns radiance
-// and weight premultiplied with the coverage that was met, which is at most 1.
+// Traces a cone front to back. origin, start: cells of level 0; direction: unit; growth: width of the filter's cells
+// relative to the distance. The filter has to widen smoothly: if it jumped from one level to the next in front of a
+// wall, the part of the wall that the fine level has not shown yet and the coarse one no longer shows would be lost.
+// Returns radiance and weight premultiplied with the coverage that was met, which is at most 1.
 ConeSample coneTrace(MipGrid grid, vec3 origin, vec3 direction, float start, float growth) {
   ConeSample sum = ConeSample(vec4(0.0), 0.0);
   float t = start;
@@ -113,7 +120,8 @@ const float kHeightPerCell = 3.0;
 
 LARGE_TEXELS(vec4, radiance);
 
-// What a cone brings back: the light that it meets, and that of an environment map as far as nothing hides it.
+// What a cone brings back, W/(sr m^2): the light that it meets, and that of an environment map where nothing hides it.
+// met: radiance times coverage, and coverage.
 vec3 lightOf(vec4 met, vec3 direction) {
   vec3 light = met.rgb;
   if (hasEnvironmentMap() && met.a < 1.0)
@@ -121,12 +129,12 @@ vec3 lightOf(vec4 met, vec3 direction) {
   return light;
 }
 
-// Irradiance on a surface from its surroundings (Eq. 3 of the paper; passes/README.md, radiance), with six
-// cones over the hemisphere:
+// Irradiance on a surface from its surroundings, W/m^2 (Eq. 3 of the paper; passes/README.md, radiance), with six cones
+// over the hemisphere:
 //   E = pi sum(L_i c_i) / sum(c_i),   c_i: cosine of the cone's axis.
 // The near part of a cone, in which the mips cannot be told from the surface itself, is a ray through the voxels. It
-// extends beyond the start of the filter up to where walls would be cut in half. turn: angle of the six cones around
-// the normal, so that neighbours do not all look in the same directions.
+// extends beyond the start of the filter up to where walls would be cut in half. position: world space, m; turn: angle
+// of the six cones around the normal, so that neighbours do not all look in the same directions.
 vec3 gatherHemisphere(VoxelGrid grid, vec3 position, vec3 normal, float turn) {
   MipGrid mips = mipGrid(grid);
   mat3 frame_ = orthonormalFrame(normal);

@@ -1,11 +1,14 @@
-// The voxel grid in which VPLs are found. The same formulas as framework/shader_twins/voxel_grid.h. Needs
-// scene/scene.glsl.
+// The voxel grid in which VPLs are found, and the bundle `voxels`. framework/shader_twins/voxel_grid.h has the same
+// functions in C++.
+//
+// Needs scene/scene.glsl.
 #ifndef FOVEA_VOXEL_GLSL
 #define FOVEA_VOXEL_GLSL
 
 #include "device/exact.glsl"
 #include "records/voxel.h"
 
+// The grid over the scene's bounds with `resolution` cells along their longest axis.
 VoxelGrid voxelGrid(uint resolution) {
   vec3 extent = max(frame.boundsMax - frame.boundsMin, vec3(0.0));
   float longest = max(max(extent.x, extent.y), max(extent.z, 1e-3));
@@ -15,6 +18,7 @@ VoxelGrid voxelGrid(uint resolution) {
   return VoxelGrid(origin, quotient(edge, float(resolution)), int(resolution));
 }
 
+// Positions in world space, m, and in cells of the grid, and whether the grid has a cell.
 vec3 worldToVoxel(VoxelGrid grid, vec3 position) { return (position - grid.origin) / grid.cell; }
 vec3 voxelToWorld(VoxelGrid grid, vec3 voxel) { return grid.origin + voxel * grid.cell; }
 bool insideGrid(VoxelGrid grid, ivec3 cell) {
@@ -29,7 +33,7 @@ uint voxelSideOf(vec3 normal) {
   return dominant < 0.0 ? 1u : 0u;
 }
 
-// The bundle "voxels" (pass voxelize): an index volume and a compact list of the voxels that hold surface.
+// The bundle `voxels` (pass voxelize): an index volume and a compact list of the voxels that hold surface.
 //   index    r32ui, R^3: 0 empty, else 1 + number of the voxel
 //   occupied r32ui, a texel for each brick of kBrickCells: a bit for each cell that holds a voxel, see occupiedBit()
 //   surface  VoxelSide; side = 2 * voxel + voxelSideOf(geometric normal)
@@ -40,6 +44,7 @@ const ivec3 kBrickCells = ivec3(kBrickWidth, kBrickHeight, kBrickDepth);
 ivec3 occupiedBrick(ivec3 cell) { return cell >> ivec3(2, 2, 1); }
 uint occupiedBit(ivec3 cell) { return 1u << (cell.x & 3 | (cell.y & 3) << 2 | (cell.z & 1) << 4); }
 
+// An empty side.
 const VoxelSide kNoSurface = VoxelSide(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
 
 #endif

@@ -1,6 +1,8 @@
-// Rays through the voxels, up to the first surface met. The same formulas as framework/shader_twins/voxel_trace.h.
-// Needs scene/scene.glsl and an input port `voxels` (index and, for traceVoxels, occupied as Usage::StorageRead,
-// surface as Usage::TexelRead). Its bindings are assigned automatically.
+// Rays through the voxels, up to the first surface that they meet. framework/shader_twins/voxel_trace.h has the same
+// functions in C++.
+//
+// Needs scene/scene.glsl and the port `voxels` with the members `index` and, for traceVoxels(), `occupied`
+// (Usage::StorageRead), and `surface` (Usage::TexelRead).
 #ifndef FOVEA_VOXEL_TRACE_GLSL
 #define FOVEA_VOXEL_TRACE_GLSL
 
@@ -19,6 +21,7 @@ VoxelGrid voxelsGrid() { return voxelGrid(uint(imageSize(voxelsIndex).x)); }
 // Number of the voxel in a cell plus 1; 0 if the cell is empty or outside the grid.
 uint voxelAt(VoxelGrid grid, ivec3 cell) { return insideGrid(grid, cell) ? imageLoad(voxelsIndex, cell).r : 0u; }
 
+// A side by its number.
 VoxelSide loadSide(uint side) {
   int first = 4 * int(side);
   vec4 a = texelOf(voxelsSurface, first), b = texelOf(voxelsSurface, first + 1),
@@ -26,11 +29,12 @@ VoxelSide loadSide(uint side) {
   return VoxelSide(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.xyz, d.w);
 }
 
+// What meetsSide() returns.
 const uint kNotMet = 0u, kPassed = 1u, kMet = 2u;
 
 // Whether the ray hits this side before it leaves the cell at distance `exit`, or only passes beside it. Only the
-// front of a side counts, and only if it is not the surface on which the ray starts. facing: cosine, negative towards
-// the ray; distance: to the plane, m.
+// front of a side counts, and only if it is not the surface on which the ray starts. origin, direction, normal: as in
+// traceVoxels(); exit, distance: m, the latter to the side's plane; facing: cosine, negative towards the ray.
 uint meetsSide(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 normal, float exit, out float facing,
                out float distance) {
   VoxelSide s = loadSide(side);
@@ -54,12 +58,12 @@ int settle(int at, int from, int stride, float next, float before, float t, bool
   return at + (more ? stride : less ? -stride : 0);
 }
 
-// First side along a ray. direction: unit; normal: of the surface on which the ray starts, unit, on the side to which
-// the ray goes (for a ray that starts on no surface, the direction itself). A side is hit if it faces the ray, is met
-// within its cell and lies in front of the start's tangent plane; the last condition skips the ray's own surface and
-// the back of a thin wall. If both sides of a voxel qualify, the one that faces the ray more is hit; a voxel without
-// such a side is passed. A ray that leaves the grid hits the last side that it merely passed, if any, since a slit
-// between the planes of neighbours is no hole in a wall.
+// First side along a ray. origin: world space, m; direction: unit; normal: of the surface on which the ray starts,
+// unit, on the side to which the ray goes (for a ray that starts on no surface, the direction itself). A side is hit if
+// it faces the ray, is met within its cell and lies in front of the start's tangent plane; the last condition skips the
+// ray's own surface and the back of a thin wall. If both sides of a voxel qualify, the one that faces the ray more is
+// hit; a voxel without such a side is passed. A ray that leaves the grid hits the last side that it merely passed, if
+// any, since a slit between the planes of neighbours is no hole in a wall.
 //
 // The walk goes from cell to cell through the nearest wall (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for
 // Ray Tracing", Eurographics 1987). The distances to the walls follow from the cell's integer coordinates, so no
@@ -72,7 +76,9 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
   vec3 p = (origin - grid.origin) / grid.cell;  // in cells, as are all distances below
   float size = float(grid.resolution);
   // Rejects NaN, for which every comparison is false, and positions too far away for a float to resolve a cell.
-  if (!(dot(abs(p), vec3(1.0)) < 1e6 && dot(direction, direction) > 0.5 && dot(direction, direction) < 2.0)) return miss;
+  if (!(dot(abs(p), vec3(1.0)) < 1e6 && dot(direction, direction) > 0.5 &&
+        dot(direction, direction) < 2.0))
+    return miss;
 
   bvec3 moves = greaterThan(abs(direction), vec3(1e-7));  // a smaller component crosses no cell of any grid
   vec3 inverse = mix(vec3(0.0), 1.0 / direction, moves);
@@ -135,6 +141,7 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
   return passed;
 }
 
+// The same without an end.
 VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal) {
   return traceVoxels(grid, origin, direction, normal, 1e30);
 }

@@ -1,5 +1,6 @@
-// Paraboloid maps: one hemisphere on a square, as the shadow atlas stores it and the shading passes read it.
-// The same functions as framework/shader_twins/paraboloid.h.
+// Paraboloid maps: one hemisphere on a square, as the shadow atlas stores it and the shading passes read it
+// (Brabec, Annen and Seidel, "Shadow Mapping for Hemispherical and Omnidirectional Light Sources", CGI 2002).
+// framework/shader_twins/paraboloid.h has the same functions in C++.
 //
 // Seen from a VPL with unit normal n, a unit direction d with local coordinates (x, y, z), z along n, lies at
 //   p = (x, y) / (1 + z)      (stereographic projection; the rim |p| = 1 is the horizon plane z = 0)
@@ -9,8 +10,8 @@
 
 #include "records/paraboloid.h"
 
-// Columns: tangent, bitangent, normal (unit, right-handed). Branchless and without singularities: Duff et al.,
-// "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+// A frame around a unit normal; its columns are tangent, bitangent and normal (unit, right-handed). Branchless and
+// without singularities: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 mat3 orthonormalFrame(vec3 n) {
   float s = n.z >= 0.0 ? 1.0 : -1.0;
   float a = -1.0 / (s + n.z);
@@ -22,8 +23,7 @@ mat3 orthonormalFrame(vec3 n) {
 vec3 toLocal(mat3 frame, vec3 v) { return v * frame; }
 vec3 toWorld(mat3 frame, vec3 v) { return frame * v; }
 
-// Projects a local vector (any length > 0, given as `len`; z > -len) to the plane of the map; |p| <=
-// 1 for the hemisphere.
+// Projects a local vector of the length `len` > 0, z > -len, to the plane of the map; |p| <= 1 for the hemisphere.
 vec2 paraboloidProject(vec3 local, float len) { return vec2(local) * (1.0 / (len + local.z)); }
 
 // Converts a point of the map's plane to the local unit direction.
@@ -32,7 +32,7 @@ vec3 paraboloidDirection(vec2 p) {
   return vec3(2.0 * p, 1.0 - q) / (1.0 + q);
 }
 
-// Conversions between the plane of the map, uv in [0,1]^2 and texels of a map with `size` texels per side.
+// Conversions between the plane of the map, uv in [0, 1]^2 and texels of a map with `size` texels per side.
 vec2 paraboloidUv(vec2 p) { return 0.5 * p + 0.5; }
 vec2 paraboloidTexelCentre(ivec2 texel, int size) { return (2.0 * vec2(texel) + 1.0) / float(size) - 1.0; }
 ivec2 paraboloidTexel(vec2 p, int size) {
@@ -43,6 +43,7 @@ vec3 paraboloidTexelDirection(ivec2 texel, int size) {
   return paraboloidDirection(paraboloidTexelCentre(texel, size));
 }
 
+// The layout of a shadow atlas, and the texel of the atlas at which a texel of the map of a slot lies.
 AtlasLayout atlasLayout(ivec3 imageSizes) {  // textureSize(atlas, 0) or imageSize(atlas)
   return AtlasLayout(imageSizes.y, findMSB(imageSizes.x / imageSizes.y));
 }

@@ -1,11 +1,17 @@
-// Shadow maps of the scene's lights: how a light sees the scene, and whether a point is lit. Needs scene/scene.glsl.
-// The views are computed by shadow-map/views.comp.
+// Shadow maps of the scene's lights: how a light sees the scene, and whether a point is lit. Pass shadow-map makes
+// them.
+//
+// Define: SHADOW_MAPS, to look up shadows; with it SHADOW_FILTER, 0 for one comparison, 1 (unless it is defined) for
+// bilinear filtering between four, 2 for the average of 3 x 3 bilinear ones; and SHADOW_LAYER, if there is only one
+// layer, its number. A CPU device loads indexed data lane by lane.
+//
+// Needs scene/scene.glsl; with SHADOW_MAPS also the port `maps` of bundle `shadow-maps`.
 #ifndef FOVEA_SHADOW_GLSL
 #define FOVEA_SHADOW_GLSL
 
 #include "records/shadow.h"
 
-// Face of the cube around a point light: +X -X +Y -Y +Z -Z.
+// Face of the cube around a point light that a vector from the light meets: +X -X +Y -Y +Z -Z.
 uint shadowFace(vec3 fromLight) {
   vec3 a = abs(fromLight);
   if (a.x >= a.y && a.x >= a.z) return fromLight.x >= 0.0 ? 0u : 1u;
@@ -13,9 +19,6 @@ uint shadowFace(vec3 fromLight) {
   return fromLight.z >= 0.0 ? 4u : 5u;
 }
 
-// Shaders that look up shadows define SHADOW_MAPS, and their passes have an input port `maps` of bundle `shadow-maps`.
-// SHADOW_FILTER: 0 one comparison, 1 bilinear between four, 2 average of 3x3 bilinear ones. SHADOW_LAYER, if defined, is
-// the only layer there is. A CPU device loads indexed data lane by lane.
 #ifdef SHADOW_MAPS
 #ifndef SHADOW_FILTER
 #define SHADOW_FILTER 1
@@ -27,6 +30,7 @@ uniform sampler nearestClamp;
 
 const float kSteepest = 32.0;  // slope against the map up to which planes are followed, 88 degrees
 
+// A surface as a shadow map sees it.
 struct ShadowReceiver {
   uint layer;
   vec2 size;    // of the map, texels
@@ -40,13 +44,13 @@ struct ShadowReceiver {
 vec4 litTexels(ShadowReceiver r, vec2 corner) {
   vec4 nearest = textureGather(sampler2DArray(mapsDepth, nearestClamp), vec3(corner / r.size, r.layer));
   vec2 o = corner - r.texel;
-  vec4 plane = r.depth + r.slope.x * (o.x + vec4(-0.5, 0.5, 0.5, -0.5)) + r.slope.y * (o.y + vec4(0.5, 0.5, -0.5, -0.5));
+  vec4 plane = r.depth + r.slope.x * (o.x + vec4(-0.5, 0.5, 0.5, -0.5)) +
+               r.slope.y * (o.y + vec4(0.5, 0.5, -0.5, -0.5));
   return vec4(lessThanEqual(nearest, plane));
 }
 
-// Share of the light that reaches `position` (world space), a point of a surface whose face has the
-// unit normal `face` on the visible side. firstLayer: light.firstShadowLayer. A face turned away from
-// the light receives nothing.
+// Share of the light that reaches `position` (world space, m), a point of a surface whose geometric normal `face` is
+// unit and on the visible side. firstLayer: light.firstShadowLayer. A face turned away from the light receives nothing.
 //
 // A texel holds the depth at its centre, so it is compared with the depth of the receiver's plane at that centre,
 // not at the receiver. This avoids acne at any angle of the light, without an offset that would detach shadows

@@ -1,9 +1,10 @@
-// Virtual point lights: their records, and how to read them from texel buffers.
+// Virtual point lights: their records (records/vpl.h), and how to read them from texel buffers.
 #ifndef FOVEA_VPL_GLSL
 #define FOVEA_VPL_GLSL
 
 #include "records/vpl.h"
 
+// Whether a slot holds a VPL that emits light.
 bool isLit(Vpl v) { return any(notEqual(v.intensity, vec3(0.0))); }
 
 // What empty slots hold, and attempts that hit nothing.
@@ -11,14 +12,15 @@ const Vpl kNoVpl = Vpl(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
 const VplState kNoVplState = VplState(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0);
 const Candidate kNoCandidate = Candidate(vec3(0.0), kNoSide, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
 
+// The VPL of a slot. list: a list of Vpl.
 Vpl loadVpl(samplerBuffer list, uint slot) {
   int first = int(slot) * 3;
   vec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2);
   return Vpl(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
 }
 
-// Records that hold whole numbers are read as bits, so that these pass unchanged. What a caller does not use is not
-// fetched: compilers leave it out.
+// The state of a slot. list: a list of VplState, read as bits, so that whole numbers in it pass unchanged. What a
+// caller does not use is not fetched: compilers leave it out.
 VplState loadVplState(usamplerBuffer list, uint slot) {
   int first = int(slot) * 5;
   uvec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2),
@@ -28,8 +30,9 @@ VplState loadVplState(usamplerBuffer list, uint slot) {
                   uintBitsToFloat(e.xyz), uintBitsToFloat(e.w));
 }
 
-uint vplStates(usamplerBuffer list) { return uint(textureSize(list)) / 5u; }  // number of them
+uint vplStates(usamplerBuffer list) { return uint(textureSize(list)) / 5u; }  // number of slots
 
+// Candidate i. list: a list of Candidate, read as bits.
 Candidate loadCandidate(usamplerBuffer list, uint i) {
   int first = int(i) * 4;
   uvec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2),

@@ -14,10 +14,11 @@
 const float kDullFrom = 0.45, kDullTo = 0.6;
 
 // Of Lobe::grazing: its value on a smooth surface, and the square of the roughness at which it has fallen to 1 / e.
-// With these the layer gets the light that bsdf.h lets through a dielectric with an index of refraction of 1.5, within
-// 0.06 above a cosine of 0.1.
+// With these the layer gets the light that the exact BSDF (framework/scene/materials/bsdf.h) lets through a dielectric
+// with an index of refraction of 1.5, within 0.06 above a cosine of 0.1.
 const float kLayerLoss = 0.87, kLayerLossEnd = 0.176;
 
+// The lobe of a surface towards the eye.
 struct Lobe {
   vec3 toEye;  // unit
   float a2;    // square of GGX's alpha
@@ -28,7 +29,7 @@ struct Lobe {
   float grazing;  // how much less of the light at grazing angles enters the diffuse layer, see responseTo()
 };
 
-// normal, specular: as gbuffer stores them.
+// The lobe at a pixel. normal, specular: of the G-buffer; toEye: to the eye, of any length.
 Lobe lobeOf(vec4 normal, vec3 toEye, vec4 specular) {
   Lobe l;
   l.toEye = normalize(toEye);
@@ -44,9 +45,9 @@ Lobe lobeOf(vec4 normal, vec3 toEye, vec4 specular) {
   return l;
 }
 
-// Neighbours of the same subset see other parts of a reflection where the surface is bent, and between them each VPL is
-// asked at one pixel only. This widens a lobe for it, and completes it. turn2: squared difference between their
-// normals, of which a quarter is about what makes their lobes overlap.
+// Neighbours of the same subset see other parts of a reflection where the surface is curved, and between them each VPL
+// is evaluated at one pixel only. This widens a lobe for that, and completes it. turn2: squared difference between
+// their normals, of which a quarter is about what makes their lobes overlap.
 const float kSharpEdge = 0.25;  // squared difference between normals of two surfaces
 void complete(inout Lobe l, float turn2) {
   l.albedo = mirrorAlbedo(l.cosine, sqrt(sqrt(l.alpha2))).all;
@@ -59,8 +60,8 @@ struct Response {
   float lobe, layer;
 };
 
-// For light from a disc of `area` m^2 at the end of `toLight`, m, with height-correlated masking V (Heitz 2014).
-// Simpler forms of V lose up to a seventh of the light.
+// The response to a disc of `area` m^2 at the end of `toLight`, m, with height-correlated masking V (Heitz 2014).
+// Simpler forms of V lose up to a seventh of the light. normal: unit.
 //
 // A disc fills the solid angle area / (d^2 + area / pi), as the kernel `disc` has it, and its halfway vectors a quarter
 // of that, divided by the cosine between halfway vector and light. A lobe that is that much wider makes the disc as

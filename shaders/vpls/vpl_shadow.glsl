@@ -1,8 +1,12 @@
-// Whether a point is in the shadow of a VPL: compares the distance in the VPL's paraboloid map with the distance that
-// it must hold for the point to be lit. Needs vpls/paraboloid.glsl.
+// Whether a point is in the shadow of a VPL.
+//
+// Needs vpls/paraboloid.glsl.
 #ifndef FOVEA_VPL_SHADOW_GLSL
 #define FOVEA_VPL_SHADOW_GLSL
 
+// Whether a VPL sees a point, by the distance in its paraboloid map and the one that it must hold for the point to be
+// lit.
+//
 // The map holds the distance along the direction of a texel's centre, but the point lies anywhere in the texel.
 // Comparing with the distance at which the centre's ray meets the tangent plane of the point removes the slope from
 // the comparison; a fixed slope-scaled bias would have to cover the whole footprint. Where the ray meets the plane

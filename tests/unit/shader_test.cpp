@@ -135,6 +135,25 @@ TEST_F(ShaderTest, PragmaOnce) {
   EXPECT_NO_THROW(compiler()->compile("main.comp"));
 }
 
+TEST_F(ShaderTest, PragmaOnceCausesNoMessageAndMovesNoLine) {
+  file("once.glsl", "// Comment\n # pragma once // here\nfloat f() { return wrong; }\n");
+  file("main.comp", "#version 460\n#include \"once.glsl\"\nvoid main() { missing; }\n");
+  const std::vector<Diagnostic> list = errors("main.comp");
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_THAT(list[0].where.file, testing::EndsWith("once.glsl"));
+  EXPECT_EQ(list[0].where.line, 3);
+  EXPECT_THAT(list[1].where.file, testing::EndsWith("main.comp"));
+  EXPECT_EQ(list[1].where.line, 3);
+}
+
+TEST_F(ShaderTest, TheCacheTellsPragmaOnceFromABlankLine) {
+  file("main.comp", "#version 460\n#include \"f.glsl\"\n#include \"f.glsl\"\nvoid main() { f(); }\n");
+  file("f.glsl", "#pragma once\nfloat f() { return 1.0; }\n");
+  EXPECT_NO_THROW(compiler()->compile("main.comp"));
+  file("f.glsl", "            \nfloat f() { return 1.0; }\n");
+  EXPECT_THAT(errors("main.comp").at(0).message, HasSubstr("f"));
+}
+
 TEST_F(ShaderTest, OwnFolderComesBeforeSearchPaths) {
   file("value.glsl", "#define VALUE wrong\n");
   file("a/value.glsl", "#define VALUE 1u\n");

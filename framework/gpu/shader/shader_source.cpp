@@ -102,7 +102,11 @@ void ShaderSource::scan(size_t file, const std::vector<std::filesystem::path>& s
     const size_t end = std::min(text.find('\n', begin), text.size());
     const std::string_view line(text.data() + begin, end - begin);
     begin = end + 1;
-    if (isPragmaOnce(line)) files_[file].once = true;
+    if (isPragmaOnce(line)) {
+      files_[file].once = true;
+      // The compiler would only warn that it does not know the directive. A blank line keeps the numbers of the others.
+      files_[file].text.replace(size_t(line.data() - text.data()), line.size(), line.size(), ' ');
+    }
     const std::optional<std::string> header = includedName(line);
     if (!header) continue;
     size_t target = kMissing;
@@ -122,7 +126,10 @@ const ShaderSource::File* ShaderSource::find(const std::string& includer, const 
 
 std::string ShaderSource::serialize() const {
   std::string out;
-  for (const File& file : files_) appendSized(out, file.text);
+  for (const File& file : files_) {
+    appendSized(out, file.text);
+    out += file.once ? '1' : '0';
+  }
   // Files are identified by index, not by path, so that another checkout finds the same entries. The order of files_
   // is that of the directives.
   for (size_t i = 0; i < files_.size(); ++i) {

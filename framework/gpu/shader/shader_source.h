@@ -15,8 +15,8 @@ class ShaderSource {
   struct File {
     std::string name;                 // for messages
     std::filesystem::path directory;  // where its #includes are searched first; empty for plain text
-    std::string text;
-    bool once = false;  // has #pragma once
+    std::string text;                 // with a blank line in place of #pragma once
+    bool once = false;                // has #pragma once
   };
 
   // Both throw Error(BadInput) if a file cannot be read. A missing #include is left to the compiler, which knows
@@ -30,7 +30,7 @@ class ShaderSource {
   const std::vector<File>& files() const { return files_; }
   // The file that `header` refers to in `includer`; null if it is missing.
   const File* find(const std::string& includer, const std::string& header) const;
-  // All of the above as one string: the texts, and which #include leads to which text.
+  // All of the above as one string: the texts, which of them have #pragma once, and which #include leads to which text.
   std::string serialize() const;
 
  private:
