@@ -211,6 +211,8 @@ class Header:
             self.documented = False
         elif line.startswith("//"):
             text = self.comment()
+            if not self.is_live():
+                return
             if re.match(r"-{4} ", text[0]):
                 self.lines += ["", "// ---- " + text.pop(0).strip("- ") + " ----", ""]
             self.lines += [("// " + t).rstrip() for t in text]
@@ -237,15 +239,15 @@ class Header:
             line = line[:-1].rstrip() + " " + self.rest.pop(0).strip()
         word = line[1:].split()[0]
         if word in {"if", "ifdef", "ifndef"}:
-            hidden = re.search(r"FOVEA_\w+_GLSL|WITHOUT_", line)
-            self.conditions.append("c++" if "__cplusplus" in line else "hidden" if hidden else "shown")
+            self.conditions.append("c++" if "__cplusplus" in line else "feature" if "WITHOUT_" in line else
+                                   "guard" if re.search(r"FOVEA_\w+_GLSL", line) else "shown")
             if self.conditions[-1] == "shown" and self.is_live():
                 self.lines.append(line)
         elif word == "else":
             if self.conditions[-1] == "shown":
                 self.lines.append(line)
             elif self.conditions[-1] == "c++":
-                self.conditions[-1] = "hidden"
+                self.conditions[-1] = "glsl"
         elif word == "endif":
             if self.conditions.pop() == "shown" and self.is_live():
                 self.lines.append("#endif")
@@ -274,8 +276,7 @@ class Header:
         for member, pair in zip(members, pairs):
             if pair and pair.group(2) and width + 2 + len(pair.group(2)) <= WIDTH + 10:
                 member = pair.group(1).ljust(width + 2) + pair.group(2)
-            if not re.search(r"\bunused\d*;", member):
-                self.lines.append(member)
+            self.lines.append(member)
         self.documented = True
 
     def function(self):
@@ -325,7 +326,8 @@ class Header:
             if len(text) > WIDTH and re.search(r"[({]", text):  # the value of a record or of a list
                 text = re.sub(r" = .*;$", ";", text)
             lines = self.wrapped(text + ("  " + comment.group(1) if comment else ""))
-        self.lines += lines
+        if "feature" not in self.conditions:  # what takes its place is behind functions and macros
+            self.lines += lines
         self.documented = self.documented or "//" in lines[-1]
 
     # ---- Writing ----
