@@ -84,7 +84,8 @@ vec3 unshadowed(vec3 position, vec3 normal, vec3 reflectance) {
   return reflectance * sum;
 }
 """),
-    "rays": ("Rays", "Rays through the triangles of the scene, and the light that they find, for passes that declare `rays`.", """\
+    "rays": ("Rays", "Rays through the triangles of the scene, and the light that they find, for passes that declare "
+             "`rays`.", """\
 #define RAY_PASSAGE 0
 #include "rays/gather.glsl"
 
@@ -116,8 +117,8 @@ ivec2 pixelInFovea(uint invocation, float foveaRadius) {
   return regionSample(kRegionFovea, makeFovea(view.gaze, view.size, foveaRadius), ivec2(view.size), stream);
 }
 """),
-    "voxels": ("Voxels", "The scene as voxels (pass `voxelize`), rays through them, cones through their mips (pass `mipmap`).",
-               """\
+    "voxels": ("Voxels", "The scene as voxels (pass `voxelize`), rays through them, cones through their mips (pass "
+               "`mipmap`).", """\
 #include "scene/scene.glsl"
 #include "voxels/voxel_trace.glsl"
 
@@ -151,7 +152,8 @@ vec3 fromProbes(ProbeGrid grid, vec3 position, vec3 normal, vec3 reflectance) {
   return reflectance * probeLight(grid, 0.3, position, normal, normalize(view.eye - position));
 }
 """),
-    "device": ("The device", "What makes results equal on all devices, and what replaces features that a device lacks.", """\
+    "device": ("The device", "What makes results equal on all devices, and what replaces features that a device "
+               "lacks.", """\
 #include "device/sums.glsl"
 
 layout(std430) buffer Total { uint low, high; } total;  // port `total`
@@ -159,7 +161,8 @@ layout(std430) buffer Total { uint low, high; } total;  // port `total`
 // Adds to a sum that does not depend on the order in which invocations come.
 void addToTotal(float number) { ADD_TO_SUM(total.low, total.high, number) }
 """),
-    "records": ("Records", "Records and constants that shaders and C++ share. The headers above include those that they need.", None),
+    "records": ("Records", "Records and constants that shaders and C++ share. The headers above include those that they "
+                "need.", None),
 }
 
 DECLARATION = re.compile(r"(?P<type>\w+(?:\[\w*\])?) (?P<name>\w+)\((?!.*\bDECLARE\b)")
@@ -192,8 +195,7 @@ class Header:
                 for p in "\n".join(lines).split("\n\n")]
 
     def until(self, end):
-        """The lines up to the one with which all braces are closed and `end` has been passed, as one text, with the comment
-        after it."""
+        """The lines up to the one in which all braces are closed and `end` stands."""
         lines, depth = [], 0
         while True:
             lines.append(self.rest.pop(0))
@@ -315,7 +317,8 @@ class Header:
     def variable(self):
         lines = self.until(";")
         binding = re.match(r"SCENE_TEXELS\((\d+), \w+, (\w+)\);\s*(?:// (.*))?", lines[0]) or \
-            re.match(r"layout\(set = 1, binding = (\d+)\) uniform .*?(\w+)(?:\[\w+\])?(?:; \})?;\s*(?:// (.*))?$", lines[0])
+            re.match(r"layout\(set = 1, binding = (\d+)\) uniform .*?(\w+)(?:\[\w+\])?(?:; \})?;\s*(?:// (.*))?$",
+                     lines[0])
         if binding:
             self.bindings.append(binding.groups())
         if re.match(r"(CONSTANT|SHARED_CONSTANT|const) ", lines[0]):
@@ -388,7 +391,8 @@ def readme(library):
         if example:
             part += f"\n```glsl\n{example}```\n"
         paths = [p for p in library if p.startswith(folder + "/") and library[p] is not language]
-        for path in sorted(paths, key=lambda p: f'"{p}"' not in (example or "")):  # what the example includes comes first
+        # What the example includes comes first.
+        for path in sorted(paths, key=lambda p: f'"{p}"' not in (example or "")):
             part += f"\n### {path}\n\n{library[path].page()}\n"
         parts.append(part)
     return "\n".join(parts)
