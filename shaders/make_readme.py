@@ -84,7 +84,8 @@ vec3 unshadowed(vec3 position, vec3 normal, vec3 reflectance) {
   return reflectance * sum;
 }
 """),
-    "rays": ("Rays", "Rays through the triangles of the scene, and the light that they find, for passes that declare `rays`.", """\
+    "rays": ("Rays", "Rays through the triangles of the scene, and the light that they find, for passes that declare "
+             "`rays`.", """\
 #define RAY_PASSAGE 0
 #include "rays/gather.glsl"
 
@@ -116,8 +117,8 @@ ivec2 pixelInFovea(uint invocation, float foveaRadius) {
   return regionSample(kRegionFovea, makeFovea(view.gaze, view.size, foveaRadius), ivec2(view.size), stream);
 }
 """),
-    "voxels": ("Voxels", "The scene as voxels (pass `voxelize`), rays through them, cones through their mips (pass `mipmap`).",
-               """\
+    "voxels": ("Voxels", "The scene as voxels (pass `voxelize`), rays through them, cones through their mips (pass "
+               "`mipmap`).", """\
 #include "scene/scene.glsl"
 #include "voxels/voxel_trace.glsl"
 
@@ -151,7 +152,8 @@ vec3 fromProbes(ProbeGrid grid, vec3 position, vec3 normal, vec3 reflectance) {
   return reflectance * probeLight(grid, 0.3, position, normal, normalize(view.eye - position));
 }
 """),
-    "device": ("The device", "What makes results equal on all devices, and what replaces features that a device lacks.", """\
+    "device": ("The device", "What makes results equal on all devices, and what replaces features that a device "
+               "lacks.", """\
 #include "device/sums.glsl"
 
 layout(std430) buffer Total { uint low, high; } total;  // port `total`
@@ -159,7 +161,8 @@ layout(std430) buffer Total { uint low, high; } total;  // port `total`
 // Adds to a sum that does not depend on the order in which invocations come.
 void addToTotal(float number) { ADD_TO_SUM(total.low, total.high, number) }
 """),
-    "records": ("Records", "Records and constants that shaders and C++ share. The headers above include those that they need.", None),
+    "records": ("Records", "Records and constants that shaders and C++ share. The headers above include those that they "
+                "need.", None),
 }
 
 DECLARATION = re.compile(r"(?P<type>\w+(?:\[\w*\])?) (?P<name>\w+)\((?!.*\bDECLARE\b)")
@@ -192,8 +195,7 @@ class Header:
                 for p in "\n".join(lines).split("\n\n")]
 
     def until(self, end):
-        """The lines up to the one with which all braces are closed and `end` has been passed, as one text, with the comment
-        after it."""
+        """The lines up to the one in which all braces are closed and `end` stands."""
         lines, depth = [], 0
         while True:
             lines.append(self.rest.pop(0))
@@ -211,6 +213,8 @@ class Header:
             self.documented = False
         elif line.startswith("//"):
             text = self.comment()
+            if not self.is_live():
+                return
             if re.match(r"-{4} ", text[0]):
                 self.lines += ["", "// ---- " + text.pop(0).strip("- ") + " ----", ""]
             self.lines += [("// " + t).rstrip() for t in text]
@@ -237,15 +241,15 @@ class Header:
             line = line[:-1].rstrip() + " " + self.rest.pop(0).strip()
         word = line[1:].split()[0]
         if word in {"if", "ifdef", "ifndef"}:
-            hidden = re.search(r"FOVEA_\w+_GLSL|WITHOUT_", line)
-            self.conditions.append("c++" if "__cplusplus" in line else "hidden" if hidden else "shown")
+            self.conditions.append("c++" if "__cplusplus" in line else "feature" if "WITHOUT_" in line else
+                                   "guard" if re.search(r"FOVEA_\w+_GLSL", line) else "shown")
             if self.conditions[-1] == "shown" and self.is_live():
                 self.lines.append(line)
         elif word == "else":
             if self.conditions[-1] == "shown":
                 self.lines.append(line)
             elif self.conditions[-1] == "c++":
-                self.conditions[-1] = "hidden"
+                self.conditions[-1] = "glsl"
         elif word == "endif":
             if self.conditions.pop() == "shown" and self.is_live():
                 self.lines.append("#endif")
@@ -274,8 +278,7 @@ class Header:
         for member, pair in zip(members, pairs):
             if pair and pair.group(2) and width + 2 + len(pair.group(2)) <= WIDTH + 10:
                 member = pair.group(1).ljust(width + 2) + pair.group(2)
-            if not re.search(r"\bunused\d*;", member):
-                self.lines.append(member)
+            self.lines.append(member)
         self.documented = True
 
     def function(self):
@@ -314,7 +317,8 @@ class Header:
     def variable(self):
         lines = self.until(";")
         binding = re.match(r"SCENE_TEXELS\((\d+), \w+, (\w+)\);\s*(?:// (.*))?", lines[0]) or \
-            re.match(r"layout\(set = 1, binding = (\d+)\) uniform .*?(\w+)(?:\[\w+\])?(?:; \})?;\s*(?:// (.*))?$", lines[0])
+            re.match(r"layout\(set = 1, binding = (\d+)\) uniform .*?(\w+)(?:\[\w+\])?(?:; \})?;\s*(?:// (.*))?$",
+                     lines[0])
         if binding:
             self.bindings.append(binding.groups())
         if re.match(r"(CONSTANT|SHARED_CONSTANT|const) ", lines[0]):
@@ -325,7 +329,8 @@ class Header:
             if len(text) > WIDTH and re.search(r"[({]", text):  # the value of a record or of a list
                 text = re.sub(r" = .*;$", ";", text)
             lines = self.wrapped(text + ("  " + comment.group(1) if comment else ""))
-        self.lines += lines
+        if "feature" not in self.conditions:  # what takes its place is behind functions and macros
+            self.lines += lines
         self.documented = self.documented or "//" in lines[-1]
 
     # ---- Writing ----
@@ -386,7 +391,8 @@ def readme(library):
         if example:
             part += f"\n```glsl\n{example}```\n"
         paths = [p for p in library if p.startswith(folder + "/") and library[p] is not language]
-        for path in sorted(paths, key=lambda p: f'"{p}"' not in (example or "")):  # what the example includes comes first
+        # What the example includes comes first.
+        for path in sorted(paths, key=lambda p: f'"{p}"' not in (example or "")):
             part += f"\n### {path}\n\n{library[path].page()}\n"
         parts.append(part)
     return "\n".join(parts)

@@ -70,7 +70,8 @@ void main() {
 #if TINT
   uint flags = uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
 #if MATERIAL_DETAIL == 2
-  // Glass is seen only where the eye's ray has not passed it (visibility.frag), and has to be as much brighter there.
+  // Glass is seen only where the eye's ray has not passed it (visibility.frag), and has to be brighter there to make up
+  // for that.
   if ((flags & kMaterialTransmits) != 0u)
     surface = brighter(surface, vec3(1.0 / (1.0 - passage(material, uv, abs(dot(interpolated, toEye))))));
 #endif

@@ -47,7 +47,7 @@ bool mayChange(uint layer, vec3 centre, float radius, bool directional) {
     meets = meets || (used && all(lessThanEqual(from, clamp(moved.zw, -1.0, 1.0))) &&
                       all(greaterThanEqual(to, clamp(moved.xy, -1.0, 1.0))));
   }
-  if (!directional && clip.w < -radius) return false;                   // behind the light: never shadowed
+  if (!directional && clip.w < -radius) return false;                   // behind the light: never in shadow
   return meets || (any_ && !directional && clip.w <= 1.1 * radius);     // reaches to the light's plane
 }
 

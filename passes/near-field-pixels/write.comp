@@ -1,5 +1,5 @@
 // Hands on what the rays have found. Among the pixels of each 4 x 4 block that got one ray each, the brightest one
-// becomes no brighter than the second: a single ray that hits something sunlit would be a firefly. Means of several
+// becomes no brighter than the second: a single ray that hits something in the sun would be a firefly. Means of several
 // rays need this less and would lose light.
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,4 +1,4 @@
-// What the rays of this frame need to know. Define: CHANGE 0/1, whether the input is there.
+// What the rays of this frame need to know. Define: CHANGE 0/1, whether the input `change` is wired.
 #include "records/near_field.h"
 #include "scene/scene.glsl"
 

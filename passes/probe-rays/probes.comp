@@ -1,4 +1,4 @@
-// How many of its rays each probe traces: one of so many.
+// Which share of its rays each probe traces: one of so many.
 #include "sampling/fovea.glsl"
 #include "scene/pixel_ray.glsl"
 #include "probes/layout.glsl"

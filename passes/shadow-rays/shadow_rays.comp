@@ -1,5 +1,5 @@
-// Direct light anew at the pixels in doubt, with rays through the triangles. Defines: GLOSS 0/1 (direct/receiver.glsl)
-// and RAY_PASSAGE (rays/trace.glsl), 1 for full materials.
+// Direct light at the pixels for which the shadow maps are in doubt, found anew by rays through the triangles. Defines:
+// GLOSS 0/1 (direct/receiver.glsl) and RAY_PASSAGE (rays/trace.glsl), 1 for full materials.
 #include "rays/visibility.glsl"
 #include "direct/receiver.glsl"
 

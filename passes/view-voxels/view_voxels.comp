@@ -1,4 +1,4 @@
-// The first voxel side along each of the eye's rays.
+// The first voxel side along the ray of each pixel.
 #include "device/texels.glsl"
 #include "scene/scene.glsl"
 #include "voxels/voxel_trace.glsl"

@@ -1,6 +1,5 @@
 // The kernel of a density: how densely, per surface area in 1/m^2, eye paths from a screen point land on an
-// unoccluded VPL. Needs scene/scene.glsl and
-// vpl-intensity/vpl_intensity.glsl.
+// unoccluded VPL. Needs scene/scene.glsl and vpl-intensity/vpl_intensity.glsl.
 #ifndef FOVEA_LANDING_GLSL
 #define FOVEA_LANDING_GLSL
 

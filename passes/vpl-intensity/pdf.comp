@@ -4,10 +4,10 @@
 // N is the number of eye paths that the list stands for: the VPLs alive, plus the paths that escaped, in proportion.
 //
 // Densities are bounded below by median / areaCap. Without that bound the few VPLs that hardly any point sees, and
-// whose density is mostly error, would outshine everything else. The contribution of a VPL to the region's mean, B_l
-// A_l p_l, is reduced only below the bound (and in `importance-area` given to others, see share.comp). A VPL that no
-// point sees (an old one, outside the region) gets the largest area: it cannot change the region's mean, and a weight
-// that jumped to 0 would flicker where the rest of the image shows its light.
+// whose density is mostly error, would be brighter than everything else. The contribution of a VPL to the region's
+// mean, B_l A_l p_l, is reduced only below the bound (and in `importance-area` given to others, see share.comp). A VPL
+// that no point sees (an old one, outside the region) gets the largest area: it cannot change the region's mean, and a
+// weight that jumped to 0 would flicker where the rest of the image shows its light.
 #include "scene/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 

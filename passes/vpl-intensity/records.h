@@ -22,14 +22,14 @@ struct Kept {
 };
 SHARED_SIZE(Kept, 8)
 
-// A VPL that surface or paths may go to.
+// A VPL to which surface or paths may be assigned.
 struct VplSite {
   vec3 position SHARED_ZERO;
   // Strategy `area`: 1 if the VPL competes, else 0. Strategy `importance-area`: added to its distance, m^2; for one
   // that the region hardly sees it is kThinSite minus that; -1 means that it takes no paths.
   float handicap SHARED_ZERO;
   vec3 normal SHARED_ZERO;
-  float light SHARED_ZERO;  // luminance of its side, negative if the side shines itself
+  float light SHARED_ZERO;  // luminance of its side, negative if the side is emissive
 };
 SHARED_SIZE(VplSite, 32)
 

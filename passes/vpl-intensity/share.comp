@@ -50,8 +50,8 @@ layout(push_constant) uniform Constants {
   float areaCap;
 };
 
-// Of all VPLs, those of the highest rank come first, and then the nearest.
-const uint kShines = 4u;    // shines itself, as the end does; light this bright would make spots elsewhere
+// Of all VPLs, those of the highest rank come first, and of these the nearest.
+const uint kShines = 4u;    // emissive, as the end is; light this bright would make spots elsewhere
 const uint kSeen = 2u;      // seen by the start of the path; for traced paths only, as dark VPLs cannot emit the light
                             // of others
 const uint kSameKind = 1u;  // lit, or not lit, as the end is
@@ -105,7 +105,7 @@ Path pathAt(uint path) {
   vec3 position = endOf(within).position, normal = endOf(within).normal;
   float kind = endOf(within).kind;
 #if TRACED
-  if (kind == kGlowing) kind = kUnlit;  // surfaces that shine light no voxels
+  if (kind == kGlowing) kind = kUnlit;  // voxels know no light of emissive surfaces
 #endif
   return Path(position, normal, inside && kind > 0.0 ? kind : 0.0, 1u << (turn & 31u),
               int((point & 63u) * laneWords(points) + (turn >> 5u)), 1e38, 1e38, kNoSide, kNoSide, 0u, 0u);

@@ -22,8 +22,8 @@ float unitsToArea(VoxelGrid grid, uint low, uint high) {
   if (before_ + (VALUE) < before_) atomicAdd(HIGH, 1u); \
 }
 
-// VPLs and ends of eye paths on sides with direct light are kept apart from the others, and so are those on sides that
-// shine themselves (kShining), by which is meant that most of their radiance is emission.
+// VPLs and ends of eye paths on sides with direct light are kept apart from the others, and so are those on emissive
+// sides (kShining), most of whose radiance is emission.
 float siteKind(float light, float emission) {
   return emission > 0.5 * light ? kShining : light > 0.0 ? 2.0 : 1.0;
 }

@@ -11,10 +11,12 @@
 #define texelsIn(name) name.list.length()
 #else
 #define LARGE_TEXELS(type, name) uniform TEXELS_##type name
+
 #define TEXELS_float samplerBuffer
 #define TEXELS_vec4 samplerBuffer
 #define TEXELS_uint usamplerBuffer
 #define TEXELS_uvec4 usamplerBuffer
+
 #define texelOf(name, i) texelFetch(name, i)
 #define texelsIn(name) textureSize(name)
 #endif

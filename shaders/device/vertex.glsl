@@ -10,8 +10,7 @@
 #include "scene/scene.glsl"
 
 #ifdef WITHOUT_geometryShader
-// Draws are not indexed, and count the corners of triangles.
-layout(location = 15) flat out uint drawn;
+layout(location = 15) flat out uint drawn;  // draws are not indexed, and count the corners of triangles
 
 // Number of the vertex, for scenePosition() and the like.
 uint drawnVertex() {

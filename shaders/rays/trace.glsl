@@ -49,8 +49,8 @@ vec2 uvAt(uvec4 triangle, vec2 weights) {
          sceneUv(triangle.z) * weights.y;
 }
 
-// trace() finds the nearest hit, or any if that suffices: on the host by Embree or the project's own tracer, on the device through
-// two trees of bounding boxes (rays/bvh.glsl).
+// trace() finds the nearest hit, or any if that suffices: on the host by Embree or the project's own tracer, on the
+// device through two trees of bounding boxes (rays/bvh.glsl).
 #ifdef __cplusplus
 RayHit trace(Ray ray, bool any) {
   RayHit hit = RayHit(kNoTriangle, ray.far, vec2(0.0));

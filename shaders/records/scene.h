@@ -14,7 +14,7 @@ struct FrameBlock {
   uint triangleCount SHARED_ZERO;
   uint staticTriangleCount SHARED_ZERO;
   uint vertexCount SHARED_ZERO;
-  float time SHARED_ZERO;  // s
+  float time SHARED_ZERO;      // s
   float exposure SHARED_ZERO;  // factor on radiance before the display curve
   vec3 boundsMin SHARED_ZERO;  // world space, m
   float unused0 SHARED_ZERO;

@@ -39,6 +39,9 @@ using uint = uint32_t;
 
 #else
 
+// SHARED_BEGIN(fovea::scene) and SHARED_END stand around the declarations, and SHARED_CONSTANT before a constant. The
+// others matter to C++ alone: the value of a member that nothing else is said about, the bytes of a record, and the
+// place of a member in it.
 #define SHARED_BEGIN(space)
 #define SHARED_END
 #define SHARED_CONSTANT const
