@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <map>
-#include <mutex>
-#include <unordered_map>
 #include <utility>
 
 #include "fovea/error.h"
 #include "framework/gpu/descriptor_pools.h"
+#include "framework/gpu/device_memory.h"
 #include "framework/gpu/physical_device.h"
 #include "framework/gpu/shader/disk_cache.h"
 #include "framework/gpu/shader/shader.h"
@@ -17,12 +16,6 @@
 
 namespace fovea::gpu {
 namespace {
-
-std::string mebibytes(uint64_t bytes) {
-  if (bytes < (1u << 20)) return std::to_string(bytes) + " bytes";
-  const uint64_t tenths = (bytes * 10 + (1u << 19)) >> 20;
-  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " MiB";
-}
 
 template <class F>
 F load(VkInstance instance, const char* name) {
@@ -52,7 +45,6 @@ struct Device::Impl {
   void describe(const FeatureChain& enabled);
   void createCaches(const DeviceOptions& options);
   void savePipelineCache();
-  uint32_t memoryType(uint32_t bits, VkMemoryPropertyFlags flags) const;  // ~0u if there is none
 
   MessageLog log;
   bool existing = false;  // instance and device are the caller's
@@ -63,7 +55,6 @@ struct Device::Impl {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkPhysicalDeviceType type{};
   VkPhysicalDeviceProperties properties{};
-  VkPhysicalDeviceMemoryProperties memory{};
   uint64_t maxAllocation = 0, maxBuffer = 0;
   uint32_t maxPushDescriptors = 0;
   Features features;
@@ -77,17 +68,7 @@ struct Device::Impl {
   std::unique_ptr<ShaderCompiler> shaders;
   std::map<std::pair<VkFilter, VkSamplerAddressMode>, VkSampler> samplers;
   std::unique_ptr<DescriptorPools> plainSets;  // where descriptors are not pushed
-
-  std::mutex memoryMutex;
-  uint64_t limit = 0;  // 0 for the size of each heap
-  uint64_t allocated = 0, peak = 0;
-  uint64_t heapAllocated[VK_MAX_MEMORY_HEAPS] = {};
-  struct Allocation {
-    uint32_t heap = 0;
-    uint64_t bytes = 0;
-    void* address = nullptr;  // for the host; null if it is not mapped
-  };
-  std::unordered_map<VkDeviceMemory, Allocation> allocations;
+  std::unique_ptr<DeviceMemory> memory;
 
   PFN_vkCmdPushDescriptorSetKHR pushDescriptorSet = nullptr;
   PFN_vkSetDebugUtilsObjectNameEXT setName = nullptr;
@@ -224,8 +205,7 @@ void Device::Impl::createDevice(const FeatureChain& enabled) {
 // What does not depend on who made the device.
 void Device::Impl::start(const FeatureChain& enabled, const DeviceOptions& options) {
   describe(enabled);
-  vkGetPhysicalDeviceMemoryProperties(physical, &memory);
-  limit = options.memoryLimit;
+  memory = std::make_unique<DeviceMemory>(physical, device, maxAllocation, options.memoryLimit);
   if (!lacks(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) && log.validation != Validation::GpuAssisted)
     pushDescriptorSet = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
         vkGetDeviceProcAddr(device, "vkCmdPushDescriptorSetKHR"));
@@ -279,13 +259,6 @@ void Device::Impl::savePipelineCache() {
   if (XXH3_64bits(data.data(), data.size()) != pipelineCacheHash) writeCacheFile(pipelineCacheFile, data);
 }
 
-uint32_t Device::Impl::memoryType(uint32_t bits, VkMemoryPropertyFlags flags) const {
-  for (uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
-    if ((bits & (1u << i)) && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
-  }
-  return ~0u;
-}
-
 Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->createInstanceAndMessenger(options);
   const std::vector<PhysicalDevice> devices = physicalDevices(impl_->instance);
@@ -329,86 +302,21 @@ uint64_t Device::maxBufferBytes() const { return impl_->maxBuffer; }
 VkPipelineCache Device::pipelineCache() const { return impl_->pipelineCache; }
 ShaderCompiler& Device::shaders() const { return *impl_->shaders; }
 
-// Memory that the host reaches as fast as any other.
-constexpr VkMemoryPropertyFlags kShared = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                          VK_MEMORY_PROPERTY_HOST_COHERENT_BIT |
-                                          VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
-
 VkDeviceMemory Device::allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemoryPropertyFlags flags,
                                 const std::string& what) {
-  const uint32_t index = impl_->memoryType(memoryTypeBits, flags);
-  if (index == ~0u) throw Error(ExitCode::Internal, "no memory type of this device fits `" + what + "`");
-  const uint32_t heap = impl_->memory.memoryTypes[index].heapIndex;
-  const std::string remedy = "use a smaller image, or parameters that need less memory" +
-                             std::string(impl_->limit ? ", or raise the memory limit" : "");
-  const std::lock_guard lock(impl_->memoryMutex);
-  const uint64_t used = impl_->limit ? impl_->allocated : impl_->heapAllocated[heap];
-  const uint64_t limit = impl_->limit ? impl_->limit : impl_->memory.memoryHeaps[heap].size;
-  const auto fail = [&](const std::string& why) {
-    throw Error(ExitCode::OutOfMemory, "out of memory: `" + what + "` needs " + mebibytes(bytes) + "; " + why,
-                remedy);
-  };
-  if (bytes > limit || used > limit - bytes)
-    fail(mebibytes(used) + " of " + mebibytes(limit) + " device memory are in use");
-  if (impl_->maxAllocation && bytes > impl_->maxAllocation)
-    fail("this device's maxMemoryAllocationSize is " + mebibytes(impl_->maxAllocation));
-  VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-  info.allocationSize = bytes;
-  info.memoryTypeIndex = index;
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  const VkResult result = vkAllocateMemory(impl_->device, &info, nullptr, &memory);
-  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-    fail("the driver has no more (" + mebibytes(used) + " are in use)");
-  check(result, "allocating " + mebibytes(bytes) + " for `" + what + "`");
-  void* address = nullptr;
-  const bool shared = (impl_->memory.memoryTypes[index].propertyFlags & kShared) == kShared;
-  if (const VkResult mapped =
-          shared ? vkMapMemory(impl_->device, memory, 0, VK_WHOLE_SIZE, 0, &address) : VK_SUCCESS;
-      mapped != VK_SUCCESS) {
-    vkFreeMemory(impl_->device, memory, nullptr);
-    check(mapped, "mapping `" + what + "`");
-  }
-  impl_->allocations.emplace(memory, Impl::Allocation{heap, bytes, address});
-  impl_->heapAllocated[heap] += bytes;
-  impl_->allocated += bytes;
-  impl_->peak = std::max(impl_->peak, impl_->allocated);
+  const VkDeviceMemory memory = impl_->memory->allocate(bytes, memoryTypeBits, flags, what);
   setName(VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(memory), what);
   return memory;
 }
 
-void* Device::mapped(VkDeviceMemory memory) const {
-  const std::lock_guard lock(impl_->memoryMutex);
-  const auto it = impl_->allocations.find(memory);
-  return it == impl_->allocations.end() ? nullptr : it->second.address;
+void Device::release(VkDeviceMemory memory) { impl_->memory->release(memory); }
+bool Device::sharesMemory() const { return impl_->memory->isShared(); }
+void* Device::mapped(VkDeviceMemory memory) const { return impl_->memory->mapped(memory); }
+uint64_t Device::allocatedBytes() const { return impl_->memory->allocatedBytes(); }
+uint64_t Device::peakAllocatedBytes() const { return impl_->memory->peakBytes(); }
+uint64_t Device::memoryLimit() const {
+  return impl_->memory->limit() ? impl_->memory->limit() : impl_->info.memoryBytes;
 }
-
-bool Device::sharesMemory() const {
-  const uint32_t index = impl_->memoryType(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-  return index != ~0u && (impl_->memory.memoryTypes[index].propertyFlags & kShared) == kShared;
-}
-
-void Device::release(VkDeviceMemory memory, uint64_t) {
-  if (!memory) return;
-  const std::lock_guard lock(impl_->memoryMutex);
-  if (const auto it = impl_->allocations.find(memory); it != impl_->allocations.end()) {
-    impl_->heapAllocated[it->second.heap] -= it->second.bytes;
-    impl_->allocated -= it->second.bytes;
-    impl_->allocations.erase(it);
-  }
-  vkFreeMemory(impl_->device, memory, nullptr);
-}
-
-uint64_t Device::allocatedBytes() const {
-  const std::lock_guard lock(impl_->memoryMutex);
-  return impl_->allocated;
-}
-
-uint64_t Device::peakAllocatedBytes() const {
-  const std::lock_guard lock(impl_->memoryMutex);
-  return impl_->peak;
-}
-
-uint64_t Device::memoryLimit() const { return impl_->limit ? impl_->limit : impl_->info.memoryBytes; }
 
 VkSampler Device::sampler(VkFilter filter, VkSamplerAddressMode mode) {
   VkSampler& handle = impl_->samplers[{filter, mode}];

@@ -83,7 +83,7 @@ class Device {
   // `what` names the resource in the out-of-memory message.
   VkDeviceMemory allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemoryPropertyFlags flags,
                           const std::string& what);
-  void release(VkDeviceMemory memory, uint64_t bytes);
+  void release(VkDeviceMemory memory);
   // Whether the host reaches the device's own memory as it does any other, so that nothing needs a copy.
   bool sharesMemory() const;
   // Where the host finds memory that was allocated; null unless it is such memory.

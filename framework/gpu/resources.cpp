@@ -97,8 +97,7 @@ VkMemoryPropertyFlags memoryFlags(MemoryKind kind) {
 UniqueMemory allocateFor(Device& device, MemoryKind kind, const VkMemoryRequirements& needs,
                          const std::string& what) {
   const auto allocated = [&](VkMemoryPropertyFlags flags) {
-    return UniqueMemory(device.allocate(needs.size, needs.memoryTypeBits, flags, what),
-                        {&device, needs.size});
+    return UniqueMemory(device.allocate(needs.size, needs.memoryTypeBits, flags, what), {&device});
   };
   if (kind == MemoryKind::Readback) {
     VkPhysicalDeviceMemoryProperties memory;
@@ -114,7 +113,7 @@ UniqueMemory allocateFor(Device& device, MemoryKind kind, const VkMemoryRequirem
 
 }  // namespace
 
-void ReleaseMemory::operator()(VkDeviceMemory memory) const { device->release(memory, bytes); }
+void ReleaseMemory::operator()(VkDeviceMemory memory) const { device->release(memory); }
 
 // ---- Buffer --------------------------------------------------------------------------------------------------
 

@@ -17,11 +17,10 @@ namespace fovea::gpu {
 
 class Device;
 
-// The deleter of memory that a device has allocated. bytes: as they were asked for.
+// The deleter of memory that a device has allocated.
 struct ReleaseMemory {
   using pointer = VkDeviceMemory;
   Device* device = nullptr;
-  uint64_t bytes = 0;
   void operator()(VkDeviceMemory memory) const;
 };
 using UniqueMemory = std::unique_ptr<std::remove_pointer_t<VkDeviceMemory>, ReleaseMemory>;

@@ -64,9 +64,9 @@ class Emit : public Pass {
     d.fill("starts", 0);
     d.step("emit/begin.comp").groups(1);
     for (int round = 1; round <= kRounds; ++round) {
-      const std::string number = " " + std::to_string(round);
-      paths(d, "trace" + number, 0).indirect("progress");
-      d.step("emit/accept.comp").called("accept" + number).define("LAST", round + 1 == kRounds).groups(1);
+      const std::string number = std::to_string(round);
+      paths(d, "trace " + number, 0).indirect("progress");
+      d.step("emit/accept.comp").called("accept " + number).define("LAST", round + 1 == kRounds).groups(1);
     }
     paths(d, "store", 1).threads(parameter("count"));
     d.step("emit/areas.comp").define("NEIGHBOURS", parameter("neighbours")).threads(parameter("count"));

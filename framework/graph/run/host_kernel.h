@@ -38,7 +38,7 @@ struct HostDispatch {
 // Runs all invocations, on several threads, and returns when they are done.
 using HostKernel = void (*)(const HostDispatch&);
 
-// shader: folder and file, such as "gbuffer/resolve.comp".
+// shader: folder and file, such as "blur/across.comp".
 void addHostKernel(std::string shader, Defines defines, HostKernel kernel);
 // shader: as in a step, which may be a path. Null if it is not compiled for the host with these macros.
 HostKernel findHostKernel(const std::string& shader, const Defines& defines);

@@ -225,8 +225,7 @@ void allocateResources(ExecutorState& state) {
 
 void freeResources(ExecutorState& state) {
   state.resources.clear();
-  for (size_t i = 0; i < state.heaps.size(); ++i)
-    state.device->release(state.heaps[i], state.plan->heaps[i].bytes);
+  for (const VkDeviceMemory heap : state.heaps) state.device->release(heap);
   state.heaps.clear();
 }
 
