@@ -238,8 +238,8 @@ class Interrupt(CliTest):
         self.fail("no frame in 30 seconds")
 
     def test_second_one_ends_at_once(self):
-        # Frames take seconds, so that the second signal arrives before the frame ends.
-        process = self.start("render", "ir_1000", "--scene", "cornellbox", "--size", "1024x1024", "--frames", "1000",
+        # Frames take a good while, so that the second signal arrives before the frame ends.
+        process = self.start("render", "ir_1000", "--scene", "cornellbox", "--size", "512x512", "--frames", "1000",
                              "-o", "a_%04d.png")
         self.wait_for(process, "a_0000.png")
         process.send_signal(signal.SIGINT)

@@ -161,12 +161,12 @@ void expectOneOverN(const Effort& effort) {
   }
 }
 
-TEST(Convergence, RelativeErrorOfInstantRadiosityFallsAsOneOverTheVpls) {
+TEST(LongConvergence, RelativeErrorOfInstantRadiosityFallsAsOneOverTheVpls) {
   expectOneOverN({.samples = 4096, .mapSize = 128, .floorPictures = 2});
 }
 
 // Runs only with --gtest_also_run_disabled_tests and takes minutes. 1024 maps of 512 x 512 texels take 1 GiB.
-TEST(Convergence, DISABLED_TheSameWithLargeMapsAndAFloorOfSixteenPictures) {
+TEST(LongConvergence, DISABLED_TheSameWithLargeMapsAndAFloorOfSixteenPictures) {
   expectOneOverN({.samples = 16384, .mapSize = 512, .floorPictures = 16});
 }
 

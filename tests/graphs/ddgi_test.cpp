@@ -55,7 +55,7 @@ TEST(Ddgi, TwoBouncesAreThoseOfAPathTracerOfDepth4) {
 }
 
 // The error against paths of many bounces falls as the probes stand closer together.
-TEST(Ddgi, ErrorFallsWithTheSpacing) {
+TEST(LongDdgi, ErrorFallsWithTheSpacing) {
   scene::Scene s = scene::builtin("cornellbox");
   s.cameras[0].position += glm::vec3(0.037f, 0.021f, 0);  // no pixel looks exactly at a seam of the room
   GraphRunOptions options;

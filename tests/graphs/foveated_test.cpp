@@ -168,7 +168,7 @@ std::vector<std::string> smallSettings(const std::string& name) {
 }
 
 // Runs every method and debug view over a moving scene under the validation layers.
-TEST(Foveated, EveryGraphRunsThirtyFramesOfAMovingScene) {
+void runEveryGraph(uint32_t frames) {
   Diagnostics messages;
   const scene::Scene s = scene::load("cornellbox_moving", messages);
   int graphs = 0;
@@ -179,13 +179,17 @@ TEST(Foveated, EveryGraphRunsThirtyFramesOfAMovingScene) {
     SCOPED_TRACE(name);
     GraphRunOptions options;
     options.size = {40, 40};
-    options.frames = 30;
+    options.frames = frames;
     options.set = smallSettings(name);
     expectFinite(runGraph(entry.path().string(), s, options));
     ++graphs;
   }
   EXPECT_GE(graphs, 25);
 }
+
+TEST(Foveated, EveryGraphRunsOverAMovingScene) { runEveryGraph(4); }
+
+TEST(LongFoveated, EveryGraphRunsThirtyFramesOfAMovingScene) { runEveryGraph(30); }
 
 // ---- Input at its limits ----------------------------------------------------------------------------------
 
@@ -274,7 +278,7 @@ glm::vec2 gazeOf(const scene::Scene& s) { return s.gaze.empty() ? glm::vec2(0.5f
 
 // Compares one indirect bounce, found by eye paths over the whole image and weighted by their density, with traced
 // paths. The clamp is set so that the kernel loses practically no light.
-TEST(Foveated, EyePathsWeighedByDensityCarryTheLightOfTracedPaths) {
+TEST(LongFoveated, EyePathsWeighedByDensityCarryTheLightOfTracedPaths) {
   for (const EnergyScene& e : energyScenes()) {
     const auto traced = tracedIndirect(e.scene, kEnergySize, 1, 64);
     const auto found =
@@ -294,7 +298,7 @@ TEST(Foveated, EyePathsWeighedByDensityCarryTheLightOfTracedPaths) {
 // for. The bias that is left in Sponza comes from having few points to estimate what is hardly seen, and from coarse
 // voxels. A list chosen by importance is not the sample of the eye paths that `pdf` takes it for, and `area` and
 // `constant` give the VPLs hidden sunlit walls.
-TEST(Foveated, BiasOfOursByWeight) {
+TEST(LongFoveated, BiasOfOursByWeight) {
   for (const EnergyScene& e : energyScenes()) {
     const bool large = e.name != "cornellbox";
     const auto traced = tracedIndirect(e.scene, kEnergySize, 1, 64);
@@ -364,7 +368,7 @@ FoveaError foveaError(const std::vector<float>& a, const std::vector<float>& ref
 // light paths do better, because they lie where the light is and the Cornell box has no hidden rooms to waste them
 // in. Reuse by importance and reuse at random cannot be told apart in five walks, because the weighting compensates
 // for how either has chosen.
-TEST(Foveated, FovealErrorByMethod) {
+TEST(LongFoveated, FovealErrorByMethod) {
   const scene::Scene s = scene::builtin("cornellbox");
   const glm::vec2 gaze = gazeOf(s);
   constexpr glm::uvec2 kSize{64, 64};

@@ -107,7 +107,7 @@ Compared compare(const scene::Scene& s, const Image& reference, uint32_t seeds,
   return c;
 }
 
-TEST(RestirGi, MeanIsTheLightOfTracedPathsUnlessBiased) {
+TEST(LongRestirGi, MeanIsTheLightOfTracedPathsUnlessBiased) {
   const scene::Scene s = offAxisCornellBox();
   const Image reference = referenceOf(s);
   const auto measured = [&](const char* name, uint32_t seeds, const std::vector<std::string>& set) {

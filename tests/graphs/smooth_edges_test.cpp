@@ -89,7 +89,7 @@ std::vector<float> shrunk(const std::vector<float>& fine, std::vector<float>& ra
 
 // Both graphs, with six seeds, against traced light over the area of each pixel: near edges, most of the error of
 // `foveal` is gone, and elsewhere little is lost.
-TEST(SmoothEdges, ApproachTheMeanOverThePixelsArea) {
+TEST(LongSmoothEdges, ApproachTheMeanOverThePixelsArea) {
   const scene::Scene s = pillars();
   GraphRunOptions traced = options(kFine * kSide, 1);
   traced.set = {"spp=64"};

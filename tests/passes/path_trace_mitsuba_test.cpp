@@ -133,12 +133,12 @@ TEST_P(PathTraceMitsubaMaterials, LookAlike) {
   compare(scene::load((kFolder / (name + ".json")).string(), warnings), name, 1024, true);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PathTraceMitsubaMaterials,
+INSTANTIATE_TEST_SUITE_P(Long, PathTraceMitsubaMaterials,
                          testing::Values("base_color", "metal", "rough", "half_metal", "normal", "emissive",
                                          "alpha", "blend"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST(PathTraceMitsuba, Sponza) {
+TEST(LongPathTraceMitsuba, Sponza) {
   Diagnostics warnings;
   scene::Scene scene;
   try {

@@ -45,11 +45,11 @@ class Look(ViewTest):
 
     @unittest.skipUnless(shutil.which("oiiotool"), "needs oiiotool")
     def test_pixels_equal_the_exr_of_render_to_the_bit(self):
-        viewer = self.view("ir_1000", "--set", "vpl_count=20", "--frames", 3)
+        viewer = self.view("ir_1000", "--set", "vpl_count=20", "--frames", 3, size="64x64")
         self.open(viewer)
-        frame, channels, words = viewer.pixels("radiance", 0, 0, 256, 256)
+        frame, channels, words = viewer.pixels("radiance", 0, 0, 64, 64)
         self.assertEqual(channels, 4)
-        self.render("ir_1000", "--scene", "cornellbox", "--size", "256x256", "--set", "vpl_count=20", "--frames",
+        self.render("ir_1000", "--scene", "cornellbox", "--size", "64x64", "--set", "vpl_count=20", "--frames",
                     frame + 1, "-o", "truth_%d.exr", "-q")
         truth = read_exr(self.folder / f"truth_{frame}.exr", "radiance")
         seen = tuple(word for i, word in enumerate(words) if i % 4 != 3)
@@ -78,7 +78,7 @@ class Look(ViewTest):
         self.assertNotIn("validation", viewer.errors())
 
     def test_exposure_channel_and_false_colour_change_the_picture(self):
-        viewer = self.view("direct", "--frames", 2)
+        viewer = self.view("direct", "--frames", 2, size="64x64")
         self.open(viewer)
         self.choose("#source", "radiance")
         self.wait(lambda: self.find("#canvas").get_attribute("data-source") == "radiance", "the radiance")
@@ -92,10 +92,10 @@ class Look(ViewTest):
         bright = changes(lambda: self.choose("#exposure", "2"), "a brighter picture")
         self.assertGreater(sum(bright), sum(plain))
         red = changes(lambda: self.choose("#channel", "red"), "one channel")
-        middle = 4 * (128 * 256 + 20)
+        middle = 4 * (32 * 64 + 5)
         self.assertEqual(len(set(red[middle:middle + 3])), 1)
         false = changes(lambda: self.find("#false-color").click(), "false colours")
-        self.assertTrue(any(len(set(false[i:i + 3])) > 1 for i in range(0, len(false), 400)))
+        self.assertTrue(any(len(set(false[i:i + 3])) > 1 for i in range(0, len(false), 100)))
 
     def test_nan_and_infinity_are_marked_and_counted(self):
         (self.folder / "passes").mkdir()
@@ -108,18 +108,18 @@ class Look(ViewTest):
 layout(rgba32f) uniform writeonly image2D radiance;
 void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-  uint word = p.x < 64 ? 0x7fc00000u : p.x < 128 ? 0x7f800000u : 0x3f000000u;
+  uint word = p.x < 16 ? 0x7fc00000u : p.x < 32 ? 0x7f800000u : 0x3f000000u;
   imageStore(radiance, p, vec4(uintBitsToFloat(word)));
 }
 """)
         graph = self.write("wrong.json", {"passes": {"wrong": {"type": "wrong"}}, "outputs": {"image": "wrong"}})
-        viewer = self.view(graph, "--frames", 2)
+        viewer = self.view(graph, "--frames", 2, size="64x64")
         self.open(viewer)
         pixels = self.canvas()
-        at = lambda x: pixels[4 * (128 * 256 + x):][:3]
-        for x, colour in ((20, (255, 0, 255)), (100, (0, 255, 255))):
+        at = lambda x: pixels[4 * (32 * 64 + x):][:3]
+        for x, colour in ((5, (255, 0, 255)), (25, (0, 255, 255))):
             self.assertLess(max(abs(a - b) for a, b in zip(at(x), colour)), 12, (x, at(x)))
-        self.wait(lambda: self.find("#numbers").get_attribute("data-nan") == str(4 * 64 * 256), "the number of NaNs")
+        self.wait(lambda: self.find("#numbers").get_attribute("data-nan") == str(4 * 16 * 64), "the number of NaNs")
 
 
     def test_text_can_be_read_in_light_and_dark(self):

@@ -117,7 +117,7 @@ class Understand(ViewTest):
 class Change(ViewTest):
     def test_a_parameter_changes_the_picture_and_the_saved_graph(self):
         graph = self.write("mine.json", {"extends": "ir_1000.json"})
-        viewer = self.view(graph, "--frames", 2)
+        viewer = self.view(graph, "--frames", 2, size="64x64")
         self.open(viewer)
         before = self.canvas()
         slider = self.find("[data-name='vpl_count'] input[type='range']")
@@ -145,8 +145,8 @@ class Change(ViewTest):
                          {"extends": "mine.json", "parameters": {"vpl_count": 7},
                           "passes": {"tonemap": {"params": {"exposure": 2}}}})
         # It runs like what was shown, and is not written over.
-        frame, _, words = viewer.pixels("radiance", 0, 0, 256, 256)
-        self.render("saved.json", "--scene", "cornellbox", "--size", "256x256", "--frames", frame + 1, "-o",
+        frame, _, words = viewer.pixels("radiance", 0, 0, 64, 64)
+        self.render("saved.json", "--scene", "cornellbox", "--size", "64x64", "--frames", frame + 1, "-o",
             "saved.exr", "-q")
         seen = tuple(word for i, word in enumerate(words) if i % 4 != 3)
         self.assertEqual(seen == read_exr(self.folder / "saved.exr", "radiance"), True, "the pictures differ")
