@@ -1,7 +1,6 @@
 #include "passes/materials.h"
 
 #include "fovea/error.h"
-#include "framework/scene/rays/ray_scene.h"
 
 namespace fovea::passes {
 
@@ -14,10 +13,6 @@ constexpr const char* kMaterials = "view.materials";
 }  // namespace
 
 bool fullMaterials(const Parameters& parameters) { return parameters.text(kMaterials) == "full"; }
-
-scene::Passing passingOf(const Parameters& parameters) {
-  return fullMaterials(parameters) ? scene::Passing::Met : scene::Passing::Never;
-}
 
 SizeExpr fullMaterials() { return parameter(kMaterials); }
 

@@ -1,20 +1,11 @@
 // What passes know of the materials of the frame (`view.materials`): whether surfaces are diffuse, or all that glTF says.
 #pragma once
 
-#include <cstdint>
-#include <string>
-
 #include "fovea/pass.h"
-
-namespace fovea::scene {
-enum class Passing : uint8_t;  // framework/scene/rays/ray_scene.h
-}
 
 namespace fovea::passes {
 
 bool fullMaterials(const graph::Parameters& parameters);
-// How rays on the host hit surfaces.
-scene::Passing passingOf(const graph::Parameters& parameters);
 // 0 or 1.
 graph::SizeExpr fullMaterials();
 // Throws Error(BadInput) if materials are full, but the input `gbuffer` does not hold them, as it is no pass's.

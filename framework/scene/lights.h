@@ -1,5 +1,4 @@
-// Evaluates a light at a point. This is the one definition on the CPU; sampleLight in shaders/scene/scene.glsl
-// does the same.
+// What the records and shadow maps of lights need.
 #pragma once
 
 #include <span>
@@ -7,18 +6,6 @@
 #include "framework/scene/scene.h"
 
 namespace fovea::scene {
-
-struct LightSample {
-  glm::vec3 irradiance{0};  // on an unoccluded surface facing the light, W/m^2
-  glm::vec3 direction{0};   // unit, to the light
-  float distance = 0;       // m; kFarAway for a directional light
-};
-
-inline constexpr float kFarAway = 1e30f;
-
-// The falloff of a spot light is saturate((cos t - cos outer) / (cos inner - cos outer))^2. A range above 0 adds the
-// window that KHR_lights_punctual recommends, saturate(1 - (d / range)^4).
-LightSample sampleLight(const Light& light, glm::vec3 position);
 
 // Number of layers in the shadow map: 1 for a directional or spot light, 6 for a point light. The layers of a light
 // follow those of the lights before it.

@@ -23,6 +23,9 @@ glm::vec4 sampleTexture(const Scene& scene, const TextureUse& use, glm::vec2 uv)
 glm::vec4 reflectance(const Scene& scene, const Material& material, glm::vec2 uv);
 glm::vec3 emission(const Scene& scene, const Material& material, glm::vec2 uv);
 
+// Whether a part of the light goes straight through, with full materials. Holes of alpha masks are no part of this.
+inline bool letsLightThrough(const Material& m) { return m.blended || m.transmission > 0; }
+
 // Numbers about a scene on which the sizes of a graph's resources may depend: "scene.triangles",
 // "scene.static_triangles", "scene.vertices", "scene.lights", "scene.shadow_layers" and "scene.shadow_texels"
 // (mostShadowTexels), each at least 1.

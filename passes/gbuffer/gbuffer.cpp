@@ -9,7 +9,6 @@
 #include "framework/scene/device/draw_clusters.h"
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/materials/passage.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
 

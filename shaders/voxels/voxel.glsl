@@ -1,5 +1,4 @@
-// The voxel grid in which VPLs are found, and the bundle `voxels`. framework/shader_twins/voxel_grid.h has the same
-// functions in C++.
+// The voxel grid in which VPLs are found, and the bundle `voxels`.
 //
 // Needs scene/scene.glsl.
 #ifndef FOVEA_VOXEL_GLSL

@@ -1,5 +1,4 @@
-// Rays through the voxels, up to the first surface that they meet. framework/shader_twins/voxel_trace.h has the same
-// functions in C++.
+// Rays through the voxels, up to the first surface that they meet.
 //
 // Needs scene/scene.glsl and the port `voxels` with the members `index` and, for traceVoxels(), `occupied`
 // (Usage::StorageRead), and `surface` (Usage::TexelRead).

@@ -1,6 +1,5 @@
 // Paraboloid maps: one hemisphere on a square, as the shadow atlas stores it and the shading passes read it
 // (Brabec, Annen and Seidel, "Shadow Mapping for Hemispherical and Omnidirectional Light Sources", CGI 2002).
-// framework/shader_twins/paraboloid.h has the same functions in C++.
 //
 // Seen from a VPL with unit normal n, a unit direction d with local coordinates (x, y, z), z along n, lies at
 //   p = (x, y) / (1 + z)      (stereographic projection; the rim |p| = 1 is the horizon plane z = 0)

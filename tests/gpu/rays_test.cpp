@@ -9,11 +9,10 @@
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
-#include "framework/scene/materials/passage.h"
 #include "framework/scene/rays/ray_scene.h"
-#include "framework/scene/rays/visibility.h"
 #include "framework/session/test_device.h"
 #include "tests/gpu/scene_queries.h"
+#include "tests/references/passage.h"
 #include "tests/support/ray_soup.h"
 
 namespace fovea::scene {
@@ -101,8 +100,7 @@ void compare(const Scene& scene, Geometry& geometry, GpuScene& device, const Fra
     const Ray ray{q.origin, q.direction, q.near, q.far};
     const RayHit want = rays.intersect(ray);
     const Answer& got = answers[i];
-    uint64_t traced = 0;
-    const glm::vec3 share = visibility(hostFrame, rays, ray, traced);
+    const glm::vec3 share = visibility(hostFrame, rays, ray);
     hits += bool(want);
     passed += want && share != glm::vec3(0);
     EXPECT_EQ(got.occluded == 1, got.triangle != kNoIndex) << "ray " << i;
@@ -145,7 +143,7 @@ TEST(DeviceRays, MeetWhatRaysOnTheHostMeet) {
   const Scene scene = threeMaterials();
   for (const uint32_t count : {1u, 4u, 5u, 3000u}) {
     Geometry g = raySoup(count);
-    GpuScene device(testDevice(), scene, g, 1, false, true);
+    GpuScene device(testDevice(), scene, g, 1, false, {.device = true});
     compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, 5000);
   }
 }
@@ -180,7 +178,7 @@ Geometry boxAndFloor() {
 TEST(DeviceRays, SlipThroughNoSharedEdge) {
   const Scene scene = threeMaterials();
   const Geometry g = boxAndFloor();
-  GpuScene device(testDevice(), scene, g, 1, false, true);
+  GpuScene device(testDevice(), scene, g, 1, false, {.device = true});
   std::vector<Query> queries;
   for (uint32_t i = 0; i < 20000; ++i) {
     glm::vec3 direction = randomVector(i, 4);
@@ -206,13 +204,11 @@ TEST(DeviceRays, LightPassesGlassWhoseNormalsCancel) {
   g.triangles.push_back({{0, 1, 2}, 0});
   g.boundsMax = glm::vec3(2);
   g.staticTriangles = 1;
-  GpuScene device(testDevice(), scene, g, 1, true, true);
+  GpuScene device(testDevice(), scene, g, 1, true, {.device = true});
   Frame frame = makeFrame(scene, g, {16, 16}, 0, 1);
   const std::vector<Answer> answers = traceOnDevice(device, frame, {{{1, 1, 0}, 0, {0, -1, 0}, 2}}, true);
   frame.geometry = &g;
-  uint64_t rays = 0;
-  const glm::vec3 want =
-      visibility(frame, RayScene(scene, g, Passing::Met), {{1, 1, 0}, {0, -1, 0}, 0, 2}, rays);
+  const glm::vec3 want = visibility(frame, RayScene(scene, g, Passing::Met), {{1, 1, 0}, {0, -1, 0}, 0, 2});
   EXPECT_EQ(answers[0].triangle, 0u);
   EXPECT_NEAR(answers[0].share.g, want.g, 2e-3);
 }
@@ -225,7 +221,7 @@ TEST(DeviceRays, PassHolesOfMasks) {
     scene.materials[size_t(i)].baseColorTexture = {0};
   }
   Geometry g = raySoup(3000);
-  GpuScene device(testDevice(), scene, g, 1, false, true);
+  GpuScene device(testDevice(), scene, g, 1, false, {.device = true});
   compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, 7000);
 }
 
@@ -238,7 +234,7 @@ TEST(DeviceRays, LightPassesGlassAndBlending) {
   scene.materials[2].transmission = 0.9f;
   scene.materials[2].baseColor = {0.9f, 0.5f, 0.2f, 1};
   Geometry g = raySoup(400);
-  GpuScene device(testDevice(), scene, g, 1, true, true);
+  GpuScene device(testDevice(), scene, g, 1, true, {.device = true});
   compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, 3000, true);
 }
 
@@ -246,7 +242,7 @@ TEST(DeviceRays, LightPassesGlassAndBlending) {
 TEST(DeviceRays, FollowWhatMoves) {
   const Scene scene = builtin("cornellbox_moving");
   Geometry g = flatten(scene);
-  GpuScene device(testDevice(), scene, g, 1, false, true);
+  GpuScene device(testDevice(), scene, g, 1, false, {.device = true});
   for (const uint64_t frame : {0, 25, 90})
     compare(scene, g, device, makeFrame(scene, g, {16, 16}, frame, 1), 20000, 5000);
   Frame hidden = makeFrame(scene, g, {16, 16}, 120, 1);

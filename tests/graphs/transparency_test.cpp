@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "framework/scene/materials/passage.h"
 #include "tests/support/graph_run.h"
 #include "tests/support/shapes.h"
 

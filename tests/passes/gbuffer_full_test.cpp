@@ -7,12 +7,12 @@
 #include <tuple>
 
 #include "framework/base/random.h"
-#include "framework/scene/materials/passage.h"
 #include "framework/scene/scene.h"
 #include "passes/path-trace/materials.h"
 #include "shaders/records/scene.h"
 #include "tests/passes/full_materials_reference.h"
 #include "tests/passes/ray_reference.h"
+#include "tests/references/passage.h"
 
 namespace fovea::test {
 namespace {

@@ -6,7 +6,6 @@
 #include <functional>
 
 #include "framework/scene/frame.h"
-#include "framework/scene/lights.h"
 #include "framework/scene/scene.h"
 #include "tests/passes/path_trace_run.h"
 #include "tests/support/sky.h"

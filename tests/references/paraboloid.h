@@ -4,10 +4,20 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "framework/scene/rays/directions.h"
 #include "shaders/records/paraboloid.h"
 
 namespace fovea::scene {
+
+// Columns: tangent, bitangent, normal (unit, right-handed).
+inline glm::mat3 orthonormalFrame(glm::vec3 n) {
+  float s = n.z >= 0.0f ? 1.0f : -1.0f;
+  float a = -1.0f / (s + n.z);
+  float b = n.x * n.y * a;
+  return {glm::vec3(1.0f + s * n.x * n.x * a, s * b, -s * n.x), glm::vec3(b, s + n.y * n.y * a, -n.y), n};
+}
+
+inline glm::vec3 toLocal(const glm::mat3& frame, glm::vec3 v) { return v * frame; }
+inline glm::vec3 toWorld(const glm::mat3& frame, glm::vec3 v) { return frame * v; }
 
 // Projects a local vector of length `len` > 0 with z > -len to the plane of the map; |p| <= 1 for the hemisphere.
 inline glm::vec2 paraboloidProject(glm::vec3 local, float len) { return glm::vec2(local) / (len + local.z); }

@@ -8,11 +8,11 @@
 #include <map>
 
 #include "fovea/scene.h"
-#include "framework/scene/lights.h"
 #include "framework/scene/load.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
 #include "framework/scene/subdivision/subdivision.h"
+#include "passes/path-trace/lights.h"
 
 namespace fovea::scene {
 namespace {
@@ -210,7 +210,7 @@ TEST_P(ValidationScenes, LightReachesTheView) {
       };
       bool reached = false;
       for (const Light& light : s.lights) {
-        const LightSample sample = sampleLight(light, p);
+        const path_trace::IncidentLight sample = path_trace::incidentLight(light, p);
         reached |= glm::dot(sample.irradiance, glm::vec3(1)) > 0 && sees(sample.direction, sample.distance);
       }
       for (int i = 0; i < 12 && !reached && !emitters.empty(); ++i) {

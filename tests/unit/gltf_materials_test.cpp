@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "framework/scene/materials/surface_materials.h"
 #include "framework/scene/materials/tangents.h"
 #include "framework/scene/scene.h"
+#include "passes/path-trace/materials.h"
 #include "scene_support.h"
 
 namespace fovea::scene {
@@ -128,7 +128,7 @@ TEST_F(GltfMaterials, EachTextureHasItsCoordinatesAndTransform) {
   EXPECT_EQ(m.metallicRoughnessTexture.transform, glm::mat3x2(2, 0, 0, 1, 0.5f, 0));
   const Geometry g = flatten(s);
   // u = 0.75 becomes 2: between the last texel and the first.
-  const SurfacePoint p = SurfaceMaterials(s, g).at({0, 1, 0.25f, 0.25f});
+  const path_trace::SurfacePoint p = path_trace::Materials(s, g).at({0, 1, 0.25f, 0.25f});
   EXPECT_NEAR(p.bsdf.roughness, (20 + 150) / 2 / 255.0f, 1e-5f);
   EXPECT_NEAR(p.bsdf.metallic, (30 + 100) / 2 / 255.0f, 1e-5f);
 }
@@ -156,7 +156,7 @@ TEST_F(GltfMaterials, VertexColoursMultiplyTheBaseColour) {
   const Geometry g = flatten(s);
   ASSERT_EQ(g.colors.size(), 3u);
   EXPECT_EQ(g.colors[2], glm::vec4(1, 0, 1, 1));  // what is not finite reads as 1
-  const SurfacePoint p = SurfaceMaterials(s, g).at({0, 1, 1, 0});
+  const path_trace::SurfacePoint p = path_trace::Materials(s, g).at({0, 1, 1, 0});
   EXPECT_LT(glm::distance(p.bsdf.baseColor, glm::vec3(0.5f, 0.5f, 0)), 1e-6f);
 }
 
@@ -175,7 +175,7 @@ TEST_F(GltfMaterials, NormalMapFollowsTheTextureCoordinates) {
   const Scene s = load(
       R"("normalTexture":{"index":0,"extensions":{"KHR_texture_transform":{"scale":[0,0]}}})", attributes);
   const Geometry g = flatten(s);
-  const SurfacePoint p = SurfaceMaterials(s, g).at({0, 1, 0.2f, 0.2f});
+  const path_trace::SurfacePoint p = path_trace::Materials(s, g).at({0, 1, 0.2f, 0.2f});
   // u runs along x and v along -y; the texel between both, with weights 1/2.
   const glm::vec3 texel = glm::vec3(105, 85, 65) * 2.0f / 255.0f - 1.0f;
   EXPECT_LT(glm::distance(p.normal, glm::normalize(texel)), 1e-5f);
@@ -189,7 +189,7 @@ TEST_F(GltfMaterials, TangentsOfTheModelDecide) {
             {"TEXCOORD_0", "VEC2", kUvs},
             {"TANGENT", "VEC4", {0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1}}});
   const Geometry g = flatten(s);
-  const SurfacePoint p = SurfaceMaterials(s, g).at({0, 1, 0.2f, 0.2f});
+  const path_trace::SurfacePoint p = path_trace::Materials(s, g).at({0, 1, 0.2f, 0.2f});
   const glm::vec3 texel = glm::vec3(105, 85, 65) * 2.0f / 255.0f - 1.0f;
   // Tangent y, bitangent -cross(z, y) = x.
   EXPECT_LT(glm::distance(p.normal, glm::normalize(glm::vec3(texel.y, texel.x, texel.z))), 1e-5f);
@@ -219,7 +219,7 @@ TEST_F(GltfMaterials, EveryByteChanged) {
         const Geometry g = flatten(s);
         ++loaded;
         if (g.triangles.empty()) continue;
-        const SurfacePoint p = SurfaceMaterials(s, g).at({0, 1, 0.3f, 0.3f});
+        const path_trace::SurfacePoint p = path_trace::Materials(s, g).at({0, 1, 0.3f, 0.3f});
         ASSERT_NEAR(glm::length(p.normal), 1, 1e-4f) << "byte " << i;
         ASSERT_TRUE(p.bsdf.roughness >= 0 && p.bsdf.roughness <= 1 && p.bsdf.metallic <= 1) << "byte " << i;
         for (int c = 0; c < 3; ++c) ASSERT_TRUE(std::isfinite(p.emission[c] + p.bsdf.baseColor[c]));

@@ -1,7 +1,5 @@
 #include "framework/scene/device/draw_runs.h"
 
-#include "framework/scene/materials/passage.h"
-
 namespace fovea::scene {
 namespace {
 

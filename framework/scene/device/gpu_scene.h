@@ -32,7 +32,7 @@ class GpuScene : public FrameDescriptors {
   // Error(BadInput) if there are more than kMaxLights lights, if these need more than kMaxShadowLayers shadow maps, or if
   // a texture is larger than the device supports.
   // fullMaterials: whether a pass asks for all that glTF says of materials. Their base colours are then those of
-  // materials/bounced.h, with which metals are not black.
+  // bouncedColor() in tables/material_table.cpp, with which metals are not black.
   // rays: where passes trace rays; elsewhere they meet nothing. On the host, scene and geometry must outlive this.
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight,
            bool fullMaterials = false, RaysWanted rays = {});

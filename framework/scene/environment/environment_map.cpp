@@ -23,16 +23,6 @@ double accumulate(std::vector<float>::iterator begin, std::vector<float>::iterat
   return sum;
 }
 
-struct Choice {
-  uint32_t index;
-  float within;  // uniform in [0, 1)
-};
-Choice choose(std::vector<float>::const_iterator begin, std::vector<float>::const_iterator end, float u) {
-  const auto found = std::min(std::upper_bound(begin, end, u), end - 1);
-  const float before = found == begin ? 0 : *(found - 1);
-  return {uint32_t(found - begin), std::min((u - before) / (*found - before), 0x1.fffffep-1f)};
-}
-
 }  // namespace
 
 EnvironmentMap::EnvironmentMap(uint32_t width, uint32_t height, std::vector<glm::vec3> texels, float turn)
@@ -81,37 +71,6 @@ glm::vec3 EnvironmentMap::radiance(glm::vec3 direction) const {
   const int x = int(left), y = int(top);
   return glm::mix(glm::mix(texel(x, y), texel(x + 1, y), fx),
                   glm::mix(texel(x, y + 1), texel(x + 1, y + 1), fx), fy);
-}
-
-float EnvironmentMap::densityIn(uint32_t column, uint32_t row) const {
-  const float* columns = &columns_[size_t(row) * width_];
-  const float inRow = columns[column] - (column > 0 ? columns[column - 1] : 0),
-              ofRow = rows_[row] - (row > 0 ? rows_[row - 1] : 0);
-  return inRow * ofRow / solidAngle(row);
-}
-
-float EnvironmentMap::density(glm::vec3 direction) const {
-  const Place p = placeOf(direction);
-  return densityIn(std::min(uint32_t(p.x), width_ - 1), std::min(uint32_t(p.y), height_ - 1));
-}
-
-EnvironmentMap::Sample EnvironmentMap::sample(float u, float v) const {
-  if (!(rows_.back() > 0)) return {};
-  const Choice row = choose(rows_.begin(), rows_.end(), v);
-  const auto columns = columns_.begin() + ptrdiff_t(size_t(row.index) * width_);
-  const Choice column = choose(columns, columns + width_, u);
-  // Uniform in the texel's solid angle.
-  const float step = glm::pi<float>() / float(height_);
-  const float y =
-      glm::mix(std::cos(float(row.index) * step), std::cos(float(row.index + 1) * step), row.within);
-  const float around =
-      ((float(column.index) + column.within) / float(width_) - 0.5f) * glm::two_pi<float>() - turn_;
-  const float across = std::sqrt(std::max(1 - y * y, 0.0f));
-  Sample s;
-  s.direction = {across * std::sin(around), y, -across * std::cos(around)};
-  s.radiance = radiance(s.direction);
-  s.density = densityIn(column.index, row.index);
-  return s;
 }
 
 std::shared_ptr<const EnvironmentMap> loadEnvironment(const std::filesystem::path& file, float intensity,

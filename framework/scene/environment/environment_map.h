@@ -19,23 +19,14 @@ class EnvironmentMap {
   // angle in radians by which the map is turned about +Y, counter-clockwise seen from above.
   EnvironmentMap(uint32_t width, uint32_t height, std::vector<glm::vec3> texels, float turn = 0);
 
-  // Directions are unit.
+  // direction: unit.
   glm::vec3 radiance(glm::vec3 direction) const;
-  // The probability density with which sample() chooses a direction, per sr. It is 0 only where the map is black.
-  float density(glm::vec3 direction) const;
-  struct Sample {
-    glm::vec3 direction{0};
-    glm::vec3 radiance{0};
-    float density = 0;  // 0: the map is black
-  };
-  // A direction in proportion to the light from there, to within the size of a texel. u, v: uniform in [0, 1).
-  Sample sample(float u, float v) const;
 
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
   const std::vector<glm::vec3>& texels() const { return texels_; }
   float turn() const { return turn_; }
-  // What sample() goes by, and shaders that choose the same directions: cumulative shares of the light of each row, a
+  // By these, shaders choose directions in proportion to the light from there (shaders/rays/emitters.glsl): cumulative shares of the light of each row, a
   // row of the map after the other, and of the rows. All are 0 where the map is black.
   const std::vector<float>& columns() const { return columns_; }
   const std::vector<float>& rows() const { return rows_; }
@@ -47,7 +38,6 @@ class EnvironmentMap {
   Place placeOf(glm::vec3 direction) const;
   const glm::vec3& texel(int x, int y) const;
   float solidAngle(uint32_t row) const;  // of a texel, sr
-  float densityIn(uint32_t column, uint32_t row) const;
 
   uint32_t width_, height_;
   std::vector<glm::vec3> texels_;

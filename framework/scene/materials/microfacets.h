@@ -25,17 +25,6 @@ inline float smithLambda(glm::vec3 v, float alpha) {
   return 0.5f * (std::sqrt(1 + alpha * alpha * (v.x * v.x + v.y * v.y) / z2) - 1);
 }
 
-// Distribution and height-correlated masking and shadowing of the microfacet model: f = F * ggxReflection(). Per sr.
-inline float ggxReflection(glm::vec3 in, glm::vec3 out, glm::vec3 h, float alpha) {
-  const float visible = 1 / (1 + smithLambda(in, alpha) + smithLambda(out, alpha));
-  return ggxDensity(h, alpha) * visible / (4 * in.z * out.z);
-}
-
-// Density with which reflection at a sampled visible normal yields `in`, per sr (Heitz 2018, Eq. 17 and 19).
-inline float visibleReflectionDensity(glm::vec3 out, glm::vec3 h, float alpha) {
-  return ggxDensity(h, alpha) / ((1 + smithLambda(out, alpha)) * 4 * out.z);
-}
-
 // A microfacet normal chosen among those that `out` sees (Heitz, "Sampling the GGX Distribution of Visible Normals",
 // JCGT 2018). u, v: uniform in [0, 1).
 inline glm::vec3 sampleVisibleNormal(glm::vec3 out, float alpha, float u, float v) {

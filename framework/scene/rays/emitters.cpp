@@ -9,7 +9,6 @@ namespace fovea::scene {
 namespace {
 
 constexpr uint32_t kInLeaf = kEmittersInLeaf;
-constexpr float kRounding = kConeRounding, kLeastCosine = kLeastEmitterCosine;
 
 // Mean over the channels and a few points. It only affects how often the triangle is chosen; the radiance of
 // a point is exact.
@@ -21,16 +20,6 @@ double estimatedRadiance(const Frame& frame, uint32_t triangle, const Material& 
   // This keeps a dark estimate from hiding a bright spot between the points.
   sum = glm::max(sum, 0.05f * material.emission);
   return (double(sum.r) + sum.g + sum.b) / 3.0;
-}
-
-// Cosine of a - b, and its sine, for angles from 0 to pi; 1 and 0 if b is larger.
-struct Angle {
-  float cosine, sine;
-};
-Angle angleOf(float cosine) { return {cosine, std::sqrt(std::max(1 - cosine * cosine, 0.0f))}; }
-Angle operator-(Angle a, Angle b) {
-  if (a.cosine >= b.cosine) return {1, 0};
-  return {a.cosine * b.cosine + a.sine * b.sine, a.sine * b.cosine - a.cosine * b.sine};
 }
 
 }  // namespace
@@ -59,16 +48,6 @@ Emitters::Emitters(const Frame& frame, bool fullMaterials) : frame_(frame) {
   if (emitters_.empty()) return;
   nodes_.resize(2 * std::bit_ceil(emitters_.size()));
   build(1, {0, uint32_t(emitters_.size())});
-  places_.assign(g.emissive.size(), kNoIndex);
-  for (uint32_t i = 0; i < emitters_.size(); ++i)
-    places_[size_t(std::ranges::lower_bound(g.emissive, emitters_[i].triangle) - g.emissive.begin())] = i;
-}
-
-uint32_t Emitters::placeOf(uint32_t triangle) const {
-  const std::vector<uint32_t>& emissive = frame_.geometry->emissive;
-  const auto found = std::ranges::lower_bound(emissive, triangle);
-  return empty() || found == emissive.end() || *found != triangle ? kNoIndex
-                                                                  : places_[size_t(found - emissive.begin())];
 }
 
 std::vector<EmitterRecord> Emitters::records() const {
@@ -104,7 +83,7 @@ void Emitters::build(uint32_t node, Range range) {
     axis /= length;
     spread = 1;
     for (auto e = begin; e != end; ++e) spread = std::min(spread, glm::dot(axis, e->normal));
-    spread = std::max(spread - kRounding, -1.0f);
+    spread = std::max(spread - kConeRounding, -1.0f);
   }
   const glm::vec3 size = high - low;
   nodes_[node] = {0.5f * (low + high), 0.25f * glm::dot(size, size), axis, spread, float(power), 0, 0, 0};
@@ -116,113 +95,6 @@ void Emitters::build(uint32_t node, Range range) {
       });
   build(2 * node, {range.first, range.middle()});
   build(2 * node + 1, {range.middle(), range.last});
-}
-
-float Emitters::weight(const EmitterNode& node, const Receiver& receiver) {
-  const glm::vec3 to = receiver.position - node.centre;
-  const float d2 = glm::dot(to, to);
-  if (d2 <= node.radius2) return node.power / std::max(node.radius2, 1e-20f);
-  const float inverse = 1 / std::sqrt(d2);
-  const float sine = std::sqrt(node.radius2) * inverse;
-  const Angle bounds{std::sqrt(1 - sine * sine), sine};
-  const Angle emitting = angleOf(glm::dot(to, node.axis) * inverse) - angleOf(node.spread) - bounds;
-  const Angle receiving = angleOf(-glm::dot(to, receiver.normal) * inverse) - bounds;
-  if (emitting.cosine < -kRounding || receiving.cosine < -kRounding) return 0;
-  return node.power * std::max(emitting.cosine, kLeastCosine) * std::max(receiving.cosine, kLeastCosine) / d2;
-}
-
-float Emitters::weight(const Emitter& emitter, const Receiver& receiver) {
-  const glm::vec3 to = receiver.position - emitter.centre;
-  const float above = glm::dot(to, emitter.normal);
-  if (!emitter.doubleSided && !(above > 0)) return 0;
-  const float d2 = std::max({glm::dot(to, to), emitter.radius2, 1e-20f}), d = std::sqrt(d2),
-              radius = std::sqrt(emitter.radius2);
-  const float receiving = radius - glm::dot(to, receiver.normal);
-  if (receiving < -kRounding * d) return 0;
-  const float emitting = std::min(std::abs(above) + 0.1f * radius, d);
-  return emitter.power * std::max(emitting, kLeastCosine * d) *
-         std::max(std::min(receiving, d), kLeastCosine * d) / (d2 * d2);
-}
-
-float Emitters::firstHalf(uint32_t node, const Receiver& receiver) const {
-  const float first = weight(nodes_[2 * node], receiver), second = weight(nodes_[2 * node + 1], receiver);
-  return first + second > 0 ? first / (first + second) : -1.0f;
-}
-
-bool Emitters::within(glm::vec3 point, float reach) const {
-  return !empty() && within(point, reach, 1, {0, uint32_t(emitters_.size())});
-}
-
-bool Emitters::within(glm::vec3 point, float reach, uint32_t node, Range range) const {
-  const auto isNear = [&](glm::vec3 centre, float radius2) {
-    const float radius = reach + std::sqrt(radius2);
-    return glm::dot(point - centre, point - centre) <= radius * radius;
-  };
-  // The bounding sphere of a triangle may extend beyond that of its node, but no farther than this.
-  if (!isNear(nodes_[node].centre, 9 * nodes_[node].radius2)) return false;
-  if (range.isLeaf())
-    return std::any_of(emitters_.begin() + range.first, emitters_.begin() + range.last,
-                       [&](const Emitter& e) { return isNear(e.centre, e.radius2); });
-  return within(point, reach, 2 * node, {range.first, range.middle()}) ||
-         within(point, reach, 2 * node + 1, {range.middle(), range.last});
-}
-
-// The random number is rescaled after each decision, so one number is enough.
-EmitterPoint Emitters::sample(const Receiver& receiver, float choice, float u, float v) const {
-  EmitterPoint p;
-  if (empty()) return p;
-  Range range{0, uint32_t(emitters_.size())};
-  float probability = 1;
-  for (uint32_t node = 1; !range.isLeaf();) {
-    const float first = firstHalf(node, receiver);
-    if (first < 0) return p;
-    const bool second = choice >= first;
-    choice = second ? (choice - first) / (1 - first) : choice / first;
-    probability *= second ? 1 - first : first;
-    node = 2 * node + (second ? 1 : 0);
-    (second ? range.first : range.last) = range.middle();
-  }
-  float total = 0, reached = 0;
-  for (uint32_t i = range.first; i < range.last; ++i) total += weight(emitters_[i], receiver);
-  if (!(total > 0)) return p;
-  const Emitter* chosen = nullptr;
-  for (uint32_t i = range.first; i < range.last; ++i) {
-    const float own = weight(emitters_[i], receiver);
-    if (!(own > 0)) continue;
-    chosen = &emitters_[i];
-    reached += own;
-    if (choice * total < reached) break;
-  }
-  const float root = std::sqrt(u);
-  p.triangle = chosen->triangle;
-  p.u = root * (1.0f - v);
-  p.v = root * v;
-  const SurfaceHit s = surfaceAt(*frame_.geometry, {p.triangle, 0, p.u, p.v});
-  p.position = s.position;
-  p.normal = glm::dot(chosen->normal, receiver.position - chosen->centre) > 0 ? s.geometricNormal
-                                                                              : -s.geometricNormal;
-  p.radiance = emission(*frame_.scene, frame_.scene->materials[s.material], s.uv);
-  p.density = probability * weight(*chosen, receiver) / (total * chosen->area);
-  return p;
-}
-
-float Emitters::density(uint32_t triangle, const Receiver& receiver) const {
-  const uint32_t place = placeOf(triangle);
-  if (place == kNoIndex) return 0;
-  Range range{0, uint32_t(emitters_.size())};
-  float probability = 1;
-  for (uint32_t node = 1; !range.isLeaf();) {
-    const float first = firstHalf(node, receiver);
-    if (first < 0) return 0;
-    const bool second = place >= range.middle();
-    probability *= second ? 1 - first : first;
-    node = 2 * node + (second ? 1 : 0);
-    (second ? range.first : range.last) = range.middle();
-  }
-  float total = 0;
-  for (uint32_t i = range.first; i < range.last; ++i) total += weight(emitters_[i], receiver);
-  const float own = weight(emitters_[place], receiver);
-  return own > 0 ? probability * own / (total * emitters_[place].area) : 0;
 }
 
 }  // namespace fovea::scene

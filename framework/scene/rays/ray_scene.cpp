@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "framework/base/hash.h"
-#include "framework/scene/materials/passage.h"
 #include "framework/scene/rays/ray_tracer.h"
 #include "shaders/records/rays.h"
 

@@ -1,6 +1,5 @@
 #include "framework/scene/tables/material_table.h"
 
-#include "framework/scene/materials/bounced.h"
 #include "shaders/records/scene.h"
 
 namespace fovea::scene {
@@ -19,6 +18,16 @@ TextureRecord textureRecord(const Scene& scene, const TextureUse& use, const Tex
   const glm::mat3x2& m = use.transform;
   return {
       float(place->z), float(place->x), float(place->y), float(flags), {t.width, t.height}, m[2], m[0], m[1]};
+}
+
+// Materials as light finds them where nobody asks in which direction it leaves. All are taken for diffuse, also where
+// the picture shows full materials; metals then keep their colour, as the mean of what they reflect differs little from
+// that, and otherwise they are black.
+glm::vec3 bouncedColor(const Material& material, bool fullMaterials) {
+  const float metal = material.meanMetallic();
+  if (!fullMaterials) return glm::vec3(material.baseColor) * (1.0f - metal);
+  if (material.unlit) return glm::vec3(0);
+  return glm::vec3(material.baseColor) * (1.0f - material.transmission * (1.0f - metal));
 }
 
 }  // namespace
