@@ -20,7 +20,7 @@ packages=(
   # images without OpenImageIO, for the preset `portable`
   libpng-dev libstb-dev libtinyexr-dev
   # tests and benchmarks
-  clang libclang-rt-dev clang-format clang-tidy libgtest-dev libgmock-dev libbenchmark-dev
+  clang-16 libclang-rt-16-dev clang-format clang-tidy libgtest-dev libgmock-dev libbenchmark-dev
   python3-jsonschema python3-matplotlib
   chromium chromium-driver python3-selenium
 )

@@ -1,5 +1,5 @@
-# fovea_discover_suites(PROGRAM LABEL [EACH_TEST]): one CTest case for each suite of a GoogleTest program, or for each test.
-# The cases have the label, except for those whose names begin with `Long`, which are labelled `long` instead.
+# fovea_discover_suites(PROGRAM LABEL [EACH_TEST]): one CTest case for each suite of a GoogleTest program, or for each
+# test. The cases have the label, except for those whose names begin with `Long`, which are labelled `long` instead.
 #
 # gtest_discover_tests makes a case, and so a process, of each test. Where tests are short, most of their time would go
 # into loading the 270 libraries behind OpenImageIO and into opening a device. The program lists its suites after it is

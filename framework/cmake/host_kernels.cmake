@@ -1,18 +1,25 @@
 # Kernels of passes that trace rays, compiled for the host (framework/host/kernel.h).
-include(CheckCXXSourceCompiles)
-
 # Shaders construct records as Record(a, b), which C++20 allows and older compilers do not know.
+include(CheckCXXSourceCompiles)
 set(CMAKE_REQUIRED_FLAGS -std=c++20)
-check_cxx_source_compiles("struct R { float a, b; }; int main() { return int(R(1, 2).a); }" FOVEA_HOST_KERNELS)
+check_cxx_source_compiles("struct R { float a, b; }; int main() { return int(R(1, 2).a); }"
+  FOVEA_PARENTHESES_MAKE_RECORDS)
 unset(CMAKE_REQUIRED_FLAGS)
+if(NOT FOVEA_PARENTHESES_MAKE_RECORDS)
+  message(FATAL_ERROR "${CMAKE_CXX_COMPILER} (${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}) cannot compile "
+    "shaders for the host: it does not initialize aggregates in parentheses (C++20, P0960). Use GCC 10, clang 16 or newer.")
+endif()
 
-# fovea_host_kernel(<target> <shader> [<macro>=<value>,<value>...]...): the shader, such as gbuffer/resolve.comp, with each
-# combination of the values of its macros, becomes a source file of the target. Where the compiler is too old, rays stay
-# on the device.
+# Literals have no suffix in GLSL.
+if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  set(FOVEA_FLOAT_LITERALS -Xclang -cl-single-precision-constant)
+else()
+  set(FOVEA_FLOAT_LITERALS -fsingle-precision-constant)
+endif()
+
+# fovea_host_kernel(<target> <shader> [<macro>=<value>,<value>...]...): the shader, such as gbuffer/resolve.comp, with
+# each combination of the values of its macros, becomes a source file of the target.
 function(fovea_host_kernel target shader)
-  if(NOT FOVEA_HOST_KERNELS)
-    return()
-  endif()
   set(variants "")
   list(APPEND variants "-")
   foreach(macro ${ARGN})
@@ -47,9 +54,8 @@ function(fovea_host_kernel target shader)
     set(file ${CMAKE_CURRENT_BINARY_DIR}/host_kernels/${file}.cpp)
     configure_file(${PROJECT_SOURCE_DIR}/framework/cmake/host_kernel.cpp.in ${file} @ONLY)
     target_sources(${target} PRIVATE ${file})
-    # Literals have no suffix in GLSL.
     set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON
-      COMPILE_OPTIONS "$<IF:$<CXX_COMPILER_ID:Clang>,SHELL:-Xclang -cl-single-precision-constant,-fsingle-precision-constant>;-fno-math-errno;-Wno-unused"
+      COMPILE_OPTIONS "${FOVEA_FLOAT_LITERALS};-fno-math-errno;-Wno-unused;-Wno-unused-parameter"
       INCLUDE_DIRECTORIES "${PROJECT_SOURCE_DIR}/shaders;${PROJECT_SOURCE_DIR}/passes")
   endforeach()
 endfunction()

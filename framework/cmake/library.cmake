@@ -11,7 +11,9 @@ function(fovea_add_library name)
   target_include_directories(fovea_${name} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(fovea_${name} PUBLIC fovea::fovea)
-  target_link_options(fovea_${name} PRIVATE $<$<NOT:$<BOOL:${FOVEA_SANITIZE}>>:LINKER:--no-undefined>)
+  if(NOT FOVEA_SANITIZE)  # whose functions are found when the program runs
+    target_link_options(fovea_${name} PRIVATE LINKER:--no-undefined)
+  endif()
   install(TARGETS fovea_${name} EXPORT fovea-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/include/fovea DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()

@@ -4,7 +4,7 @@
 #   tests/fuzz/run.sh 600                          every target for ten minutes
 #   tests/fuzz/run.sh 2000000x gaze_fuzz suite_fuzz
 #
-# Needs clang. Inputs are kept in build/fuzz/corpus from run to run, and those that add no coverage are removed at the
+# Needs clang-16. Inputs are kept in build/fuzz/corpus from run to run, and those that add no coverage are removed at the
 # end. An input that crashes, takes longer than 2 s or more than 1 GiB ends the run and is kept in build/fuzz/found.
 # Memory counts when it is used: for an attribute with a forged size, OpenEXR requests 2 GiB before it notices the end of
 # the file.

@@ -67,7 +67,7 @@ class Look(ViewTest):
         self.assertEqual(told, words)
 
     def test_every_port_that_is_made_can_be_seen(self):
-        viewer = self.view("ours", "--set", "vpl_count=64", "--validation", size="64x64")
+        viewer = self.view("ours", "--set", "vpl_count=64", "--frames", 2, "--validation", size="64x64")
         self.open(viewer)
         sources = [port["source"] for p in viewer.state()["graph"]["passes"] for port in p["ports"] if port["made"]]
         self.assertGreater(len(sources), 40)
