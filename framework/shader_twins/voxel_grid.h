@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "shaders/common/records/voxel.h"
+#include "shaders/records/voxel.h"
 
 namespace fovea::scene {
 

@@ -63,7 +63,7 @@ class Emit : public Pass {
     d.counter("vpls", "slots filled");
     d.counter("escaped", "rays that left the scene");
     d.fill("starts", 0);
-    d.step("emit/begin.comp").groups(1);
+    d.step("emit/begin.comp").define("RAY_PASSAGE", 0).groups(1);
     for (int round = 1; round <= kRounds; ++round) {
       const std::string number = " " + std::to_string(round);
       paths(d, "trace" + number, 0).indirect("progress");
