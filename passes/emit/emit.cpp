@@ -12,8 +12,8 @@ using namespace graph;
 
 constexpr Usage kReadWrite = Usage::StorageRead | Usage::StorageWrite;
 
-// The first round has as many paths as there are slots, the later ones as many as probably fill the list; what they leave
-// free is left to the last one.
+// The first round has as many paths as there are slots, the later ones as many as probably fill the list; what they
+// leave free is left to the last one.
 constexpr int kRounds = 4;
 
 void declarePorts(PassDeclaration& d) {
