@@ -1,5 +1,5 @@
-// The area of a VPL: pi r^2 / k, where r is the distance to the k-th nearest VPL whose normal is within 60 degrees, which
-// is unbiased for the inverse of the density of a Poisson process; but at most that of the scene's bounding box.
+// The area of a VPL: pi r^2 / k, where r is the distance to the k-th nearest VPL whose normal is within 60 degrees,
+// which is unbiased for the inverse of the density of a Poisson process; but at most that of the scene's bounding box.
 // Define: NEIGHBOURS, k.
 #include "scene/scene.glsl"
 #include "records/light_paths.h"

@@ -1,9 +1,9 @@
-// The power of the sources, and the first round of paths. The light of a path is chosen by the sums in `shares`.
-#define RAY_PASSAGE 0
+// The power of the sources, and the first round of paths. `shares` gets the sums by which paths choose a light. Define:
+// RAY_PASSAGE 0 (rays/trace.glsl).
 #include "emit/sources.glsl"
 #include "emit/rounds.glsl"
 
-layout(local_size_x = 128) in;  // kMaxLights
+layout(local_size_x = 1) in;
 
 VALUE(writeonly, LightPaths, progress);
 LIST(writeonly, float, shares);
@@ -14,35 +14,21 @@ layout(push_constant) uniform Constants {
   uint emissive;
 } constants;
 
-shared float powers[kMaxLights];
+CONSTANT float kMostPower = 3e38;
 
 void main() {
-  uint i = gl_LocalInvocationID.x;
-  float own = i < frame.lightCount ? meanChannel(powerOf(lights[i])) : 0.0;
-  powers[i] = own > 0.0 && !isinf(own) ? own : 0.0;
-  barrier();
-  if (i > 0u) return;
-  float power = 0.0;
-  for (uint light = 0u; light < frame.lightCount; ++light) {
-    power += powers[light];
-    shares.list[light] = power;
+  float lightPower = 0.0;
+  for (uint i = 0u; i < frame.lightCount; ++i) {
+    float own = meanChannel(powerOf(lights[i]));
+    if (own > 0.0 && own < kMostPower) lightPower += own;
+    shares.list[i] = lightPower;
   }
-  LightPaths start;
-  start.lightPower = power;
-  start.power = power + (constants.emissive != 0u ? emissivePower() : 0.0);
+  float power = lightPower + (constants.emissive != 0u ? emissivePower() : 0.0);
   // The longest path must fit into an empty list.
-  bool hasSurfaces = start.power > power;
-  start.bounces = min(constants.bounces, constants.count - uint(hasSurfaces));
-  bool any = frame.triangleCount > 0u && start.power > 0.0 && (start.bounces > 0u || hasSurfaces);
-  start.first = 0u;
-  start.count = any ? constants.count : 0u;
-  uvec2 groups = groupsOf(start.count);
-  start.groupsX = groups.x;
-  start.groupsY = groups.y;
-  start.groupsZ = 1u;
-  start.paths = 0u;
-  start.stored = 0u;
-  start.full = 0u;
-  start.unused = 0u;
-  progress.value = start;
+  bool hasSurfaces = power > lightPower;
+  uint bounces = min(constants.bounces, constants.count - uint(hasSurfaces));
+  bool any = frame.triangleCount > 0u && power > 0.0 && (bounces > 0u || hasSurfaces);
+  uint paths = any ? constants.count : 0u;
+  uvec2 groups = groupsOf(paths);
+  progress.value = LightPaths(groups.x, groups.y, 1u, 0u, paths, 0u, 0u, 0u, bounces, lightPower, power, 0u);
 }

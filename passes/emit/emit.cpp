@@ -12,8 +12,8 @@ using namespace graph;
 
 constexpr Usage kReadWrite = Usage::StorageRead | Usage::StorageWrite;
 
-// The first round has as many paths as there are slots, the later ones as many as probably fill the list; what they leave
-// free is left to the last one.
+// The first round has as many paths as there are slots, the later ones as many as probably fill the list; what they
+// leave free is left to the last one.
 constexpr int kRounds = 4;
 
 void declarePorts(PassDeclaration& d) {
@@ -62,7 +62,7 @@ class Emit : public Pass {
     d.counter("vpls", "slots filled");
     d.counter("escaped", "rays that left the scene");
     d.fill("starts", 0);
-    d.step("emit/begin.comp").groups(1);
+    d.step("emit/begin.comp").define("RAY_PASSAGE", 0).groups(1);
     for (int round = 1; round <= kRounds; ++round) {
       const std::string number = std::to_string(round);
       paths(d, "trace " + number, 0).indirect("progress");

@@ -1,6 +1,6 @@
-// Light paths, one an invocation, with a VPL at every hit (Keller 1997). In a round (`stores` 0) only the number of VPLs
-// of each path is found, by which `accept` chooses the paths that count; those are traced once more to store them, by
-// the same code, so that rounding cannot make them longer. Define: RAY_PASSAGE 0 (rays/trace.glsl).
+// Light paths, one an invocation, with a VPL at every hit (Keller 1997). In a round (`stores` 0) only the number of
+// VPLs of each path is found, by which `accept` chooses the paths that count; those are traced once more to store them,
+// by the same code, so that rounding cannot make them longer. Define: RAY_PASSAGE 0 (rays/trace.glsl).
 #include "emit/sources.glsl"
 #include "sampling/sobol.glsl"
 #include "records/light_paths.h"
@@ -52,8 +52,10 @@ Emission emission(uint index, uint seed) {
   float lightPower = progress.value.lightPower, power = progress.value.power, x = sobol(index, 0u, seed) * power;
   vec3 u = vec3(sobol(index, 1u, seed), sobol(index, 2u, seed), sobol(index, 3u, seed));
   float surfaces = power - lightPower;
-  if (x >= lightPower && surfaces > 0.0)
-    return fromTriangle(surfaces / power, (x - lightPower) / surfaces, u, vec2(sobol(index, 4u, seed), sobol(index, 5u, seed)));
+  if (x >= lightPower && surfaces > 0.0) {
+    vec2 turn_ = vec2(sobol(index, 4u, seed), sobol(index, 5u, seed));
+    return fromTriangle(surfaces / power, (x - lightPower) / surfaces, u, turn_);
+  }
   LightRecord light = lights[lightAt(x)];
   return fromLight(light, meanChannel(powerOf(light)) / power, u);
 }

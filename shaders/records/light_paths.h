@@ -7,7 +7,8 @@ SHARED_BEGIN(fovea::passes)
 
 SHARED_CONSTANT uint kLightPathStream = 0x656d6974u;  // keeps the random numbers of light paths apart from others
 
-// Paths are traced in rounds. A path counts once it is known that its VPLs and those of all before it fit into the list.
+// Paths are traced in rounds. A path counts once it is known that its VPLs and those of all before it fit into the
+// list.
 struct LightPaths {
   uint groupsX SHARED_ZERO;  // work groups of the next round
   uint groupsY SHARED_ZERO;

@@ -1,4 +1,5 @@
-// Quasi-random numbers: Owen-scrambled Sobol' points, the same as framework/base/low_discrepancy.h, which explains them.
+// Quasi-random numbers: Owen-scrambled Sobol' points, the same as framework/base/low_discrepancy.h, which explains
+// them.
 #ifndef FOVEA_SOBOL_GLSL
 #define FOVEA_SOBOL_GLSL
 
@@ -14,8 +15,8 @@ uint laineKarras(uint x, uint seed) {
   return x;
 }
 
-// The bits of the fraction in reverse. The direction numbers of Joe and Kuo, 2008, follow from the ones before; those of
-// the first dimension are the unit matrix.
+// The bits of the fraction in reverse. The direction numbers of Joe and Kuo, 2008, follow from the ones before; those
+// of the first dimension are the unit matrix.
 uint unscrambledSobol(uint index, uint within) {
   if (within == 0u) return index;
   uint x = 0u;
@@ -35,7 +36,8 @@ uint unscrambledSobol(uint index, uint within) {
 float sobol(uint index, uint dimension, uint seed) {
   uint group = hashCombine(seed, dimension / 4u), within = dimension % 4u;
   uint shuffled = bitfieldReverse(laineKarras(bitfieldReverse(index), group));
-  return uniformFloat(bitfieldReverse(laineKarras(unscrambledSobol(shuffled, within), hashCombine(group, within + 1u))));
+  uint point = laineKarras(unscrambledSobol(shuffled, within), hashCombine(group, within + 1u));
+  return uniformFloat(bitfieldReverse(point));
 }
 
 #endif
