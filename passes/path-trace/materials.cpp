@@ -12,7 +12,7 @@ using namespace scene;
 
 constexpr float kLeastCosine = 0.01f;  // between the normal and the direction to the viewer
 
-bool letsLightThrough(const Material& m) { return m.blended || m.transmission > 0; }
+bool isTransparent(const Material& m) { return m.blended || m.transmission > 0; }
 
 glm::vec3 unitOr(glm::vec3 v, glm::vec3 otherwise) {
   const float length = glm::length(v);
@@ -30,11 +30,11 @@ glm::vec3 SurfacePoint::normalTowards(glm::vec3 out) const {
 Materials::Materials(const Scene& scene, const Geometry& geometry) : scene_(scene), geometry_(geometry) {
   for (const Material& m : scene.materials) {
     dielectricAlbedos_.push_back(&AlbedoTable::dielectric(m.ior));
-    anyTransmits_ = anyTransmits_ || letsLightThrough(m);
+    anyTransmits_ = anyTransmits_ || isTransparent(m);
   }
 }
 
-bool Materials::transmits(uint32_t triangle) const { return letsLightThrough(materialOf(triangle)); }
+bool Materials::transmits(uint32_t triangle) const { return isTransparent(materialOf(triangle)); }
 
 template <class T>
 T Materials::interpolated(const std::vector<T>& values, const RayHit& hit) const {

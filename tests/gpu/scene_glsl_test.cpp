@@ -12,6 +12,7 @@
 #include "framework/session/test_device.h"
 #include "passes/path-trace/lights.h"
 #include "tests/gpu/scene_queries.h"
+#include "tests/references/passage.h"
 
 namespace fovea::scene {
 namespace {

@@ -19,30 +19,9 @@ using test::errorOf;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-constexpr double kSphere = 4 * glm::pi<double>();
-
 glm::vec3 directionAt(double u, double v) {  // of a place in the picture
   const double phi = (u - 0.5) * glm::two_pi<double>(), theta = v * glm::pi<double>();
   return glm::vec3(std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi));
-}
-
-// Random light with a few black texels and one that is very bright.
-EnvironmentMap speckled(uint32_t width = 16, float turn = 0) {
-  std::vector<glm::vec3> texels;
-  for (uint32_t i = 0; i < width * width / 2; ++i) {
-    const float r = uniformFloat(randomStream(5, i, 0, 0));
-    texels.push_back(r < 0.3f ? glm::vec3(0) : r * glm::vec3(1, 2, 0.5f));
-  }
-  texels[37] = glm::vec3(200, 100, 50);
-  return {width, width / 2, std::move(texels), turn};
-}
-
-// Points that lie evenly on the sphere, each in the middle of an equal share of it.
-template <class Function>
-void overTheSphere(uint32_t side, const Function& visit) {
-  for (uint32_t j = 0; j < side; ++j)
-    for (uint32_t i = 0; i < 2 * side; ++i)
-      visit(directionAt((i + 0.5) / (2 * side), std::acos(1 - 2 * (j + 0.5) / side) / glm::pi<double>()));
 }
 
 TEST(EnvironmentMap, MiddleLiesAheadAndTheUpperEdgeAbove) {

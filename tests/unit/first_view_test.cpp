@@ -12,7 +12,8 @@
 #include "fovea/image.h"
 #include "framework/scene/environment/sky.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/rays/surface_tracer.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "passes/path-trace/path_tracer.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {
@@ -42,7 +43,7 @@ scene::Scene box(glm::vec3 half) {
   return s;
 }
 
-// The first camera's picture by the tracer of single rays, as displayed: 32 x 32 pixels.
+// The first camera's picture by the path tracer, as displayed: 32 x 32 pixels.
 struct Displayed {
   double mean = 0, clipped = 0, surfaces = 0;
 };
@@ -52,25 +53,36 @@ Displayed display(const scene::Scene& s) {
   const scene::Geometry g = scene::flatten(s);
   const scene::Frame frame = scene::makeFrame(s, g, {kSize, kSize}, 0, 7);
   const auto rays = scene::RayScene::cached(s, g);
-  const scene::SurfaceTracer tracer(frame, frame.views[0], *rays);
+  std::vector<glm::vec4> radiance(size_t(kSize) * kSize);
+  path_trace::tracePaths(frame, frame.views[0], *rays, {.samples = 16}, {.radiance = radiance});
   Displayed d;
-  uint64_t count = 0;
   for (uint32_t y = 0; y < kSize; ++y)
     for (uint32_t x = 0; x < kSize; ++x) {
-      const scene::TracedSurface seen = tracer.look(glm::vec2(x, y) + 0.5f, count);
-      const glm::vec3 direction = glm::normalize(frame.views[0].rayDirection(glm::vec2(x, y) + 0.5f));
-      glm::vec3 light = s.environmentMap ? s.environmentMap->radiance(direction) : s.environment;
-      if (seen.there) {
-        const glm::vec3 rho = tracer.reflectance(seen);
-        light = tracer.emitted(seen) + tracer.direct(seen, scene::Reflection(rho), count) +
-                rho * tracer.gather(seen, 2, 64, 1 + x + kSize * y, count);
-      }
-      d.surfaces += seen.there / double(kSize * kSize);
+      const glm::vec3 direction = glm::normalize(frame.views[0].rayDirection(glm::vec2(x, y) + 0.5f)),
+                      light(radiance[y * kSize + x]);
+      d.surfaces += bool(rays->intersect({frame.views[0].eye, direction})) / double(kSize * kSize);
       d.clipped += std::max({light.r, light.g, light.b}) * s.exposure > 1 ? 1 / double(kSize * kSize) : 0;
       for (int c = 0; c < 3; ++c)
         d.mean += image::srgbEncode(std::min(light[c] * s.exposure, 1.0f)) / double(3 * kSize * kSize);
     }
   return d;
+}
+
+// Radiance that leaves a point in a direction (unit), W/(sr m^2), as a narrow camera 0.2 m away sees it.
+glm::vec3 lightFrom(const scene::Scene& s, glm::vec3 point, glm::vec3 direction,
+                    const path_trace::PathTraceSettings& settings) {
+  const scene::Geometry g = scene::flatten(s);
+  const scene::Frame frame = scene::makeFrame(s, g, {1, 1}, 0, 1);
+  scene::Camera camera;
+  camera.position = point + 0.2f * direction;
+  camera.orientation =
+      glm::quatLookAt(-direction, std::abs(direction.y) > 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0));
+  camera.verticalFov = 0.01f;
+  camera.zNear = 0.01f;
+  std::vector<glm::vec4> radiance(1);
+  path_trace::tracePaths(frame, scene::makeView(camera, {1, 1}, g), *scene::RayScene::cached(s, g), settings,
+                         {.radiance = radiance});
+  return glm::vec3(radiance[0]);
 }
 
 void expectGoodPicture(const scene::Scene& s) {
@@ -226,28 +238,17 @@ TEST(FirstView, TheGroundContinuesTheFloor) {
   ASSERT_TRUE(s.assumedSky && s.environmentMap && s.lights.size() == 1);
   EXPECT_LT(glm::distance(s.lights[0].direction, -scene::towardsSun(*s.assumedSky)), 1e-6f);
   EXPECT_LE(std::abs(s.assumedSky->sunAzimuth), glm::pi<float>() + 1e-6f);
-  const scene::Geometry g = scene::flatten(s);
-  const scene::Frame frame = scene::makeFrame(s, g, {8, 8}, 0, 1);
-  const auto rays = scene::RayScene::cached(s, g);
-  const scene::SurfaceTracer tracer(frame, frame.views[0], *rays);
   const scene::Node& floor = s.nodes.back();
-  const glm::vec3 above =
-      floor.translation +
-      0.9f * floor.scale.x * glm::vec3(-s.lights[0].direction.x, 0, -s.lights[0].direction.z);
-  uint64_t count = 0;
-  const scene::TracedSurface seen = tracer.arrive(above + glm::vec3(0, 1, 0), {0, -1, 0}, 1e6f, count);
-  ASSERT_TRUE(seen.there);
-  const glm::vec3 rho = tracer.reflectance(seen),
-                  light = tracer.direct(seen, scene::Reflection(rho), count) +
-                          rho * tracer.gather(seen, 1, 4096, 1, count),
-                  ground = s.environmentMap->radiance({0, -1, 0});
+  const glm::vec3 sunwards(-s.lights[0].direction.x, 0, -s.lights[0].direction.z), up(0, 1, 0);
+  const glm::vec3 point = floor.translation + 0.9f * floor.scale.x * sunwards,
+                  light = lightFrom(s, point, up, {.depth = 3, .samples = 4096}),
+                  ground = s.environmentMap->radiance(-up);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], ground[c], 0.02f * ground[c]);
   // With full materials the floor has no highlight, not even where the sun would be mirrored.
-  const scene::SurfaceTracer full(frame, frame.views[0], *rays, true);
-  const glm::vec3 mirrored = glm::reflect(s.lights[0].direction, glm::vec3(0, 1, 0));
-  const glm::vec3 sunlit = tracer.direct(seen, scene::Reflection(rho), count),
-                  shown = full.seen(seen, mirrored, count);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], sunlit[c], 0.01f * sunlit[c]);
+  const glm::vec3 mirrored = glm::reflect(s.lights[0].direction, up);
+  const glm::vec3 matt = lightFrom(s, point, mirrored, {.depth = 3, .samples = 4096}),
+                  full = lightFrom(s, point, mirrored, {.depth = 3, .samples = 4096, .full = true});
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(full[c], matt[c], 0.02f * matt[c]);
 }
 
 // A given environment is never replaced. If it does not suffice, as this black one, there is a lamp.

@@ -7,7 +7,6 @@
 
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/rays/visibility.h"
 #include "tests/references/passage.h"
 #include "tests/support/shapes.h"
 
