@@ -63,7 +63,7 @@ TEST_P(NearFieldPixels, OnlyWhereItIsNotKnown) {
     before.push_back(i % 2 == 0 ? known : unknown);
   }
   RayPassTest test("near-field-pixels");
-  constexpr int kSamples = 1024;
+  constexpr int kSamples = 256;
   test.param("samples", kSamples);
   wire(test, room.scene, mask, before);
   test.run();
