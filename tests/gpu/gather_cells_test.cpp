@@ -25,24 +25,32 @@ using test::testDevice;
 // As in the shader below.
 struct Sample {
   glm::vec3 light;
-  uint32_t cell;  // the cell lies at x = cell + 1/2, and cells are 1 m wide
+  float width = 1;  // of cells, m
+  glm::vec3 position;
+  float unused0 = 0;
+  glm::vec3 normal{0, 1, 0};
+  float unused1 = 0;
+  glm::vec3 jitter{0};
+  float unused2 = 0;
 };
+
+// In the cell that lies at x = cell + 1/2.
+Sample sampleOf(uint32_t cell, glm::vec3 light) { return {light, 1, {float(cell) + 0.5f, 0.5f, 0.5f}}; }
 
 class Cells {
  public:
-  Cells() : device_(testDevice()), scene_(device_, model(), geometry_, 1, false, true) {
+  Cells() : device_(testDevice()), scene_(device_, model(), geometry_, 1, false, {.device = true}) {
     cells_ = gpu::Buffer(device_,
                          {"cells", kGatherCells * sizeof(GatherCell), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-    std::vector<GatherCell> none(kGatherCells);
-    gpu::upload(device_, cells_, std::as_bytes(std::span(none)));
+    clear();
     add_ = pipeline(R"(
-struct Sample { vec3 light; uint cell; };
+struct Sample { vec3 light; float width; vec3 position, normal, jitter; };
 layout(std430) readonly buffer Samples { Sample samples[]; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
-  CellName cell = cellOf(vec3(float(samples[i].cell) + 0.5, 0.5, 0.5), vec3(0.0, 1.0, 0.0), vec3(0.0), 1.0);
-  addToCell(cell, samples[i].light);
+  Sample s = samples[i];
+  addToCell(cellOf(s.position, s.normal, s.jitter, s.width), s.light);
 }
 )");
     merge_ = pipeline(R"(
@@ -50,6 +58,11 @@ void main() {
   if (gl_GlobalInvocationID.x < count) mergeSamples(gl_GlobalInvocationID.x, ageing);
 }
 )");
+  }
+
+  void clear() {
+    const std::vector<GatherCell> none(kGatherCells);
+    gpu::upload(device_, cells_, std::as_bytes(std::span(none)));
   }
 
   // One frame in which these samples come.
@@ -128,7 +141,7 @@ layout(push_constant) uniform Constants { uint count; float ageing; };
 };
 
 std::vector<Sample> samplesOf(uint32_t cell, int count, glm::vec3 light) {
-  return std::vector<Sample>(size_t(count), {light, cell});
+  return std::vector<Sample>(size_t(count), sampleOf(cell, light));
 }
 
 TEST(GatherCells, MeanOfTheSamplesOfEachCell) {
@@ -171,12 +184,36 @@ TEST(GatherCells, WhatIsNoLongerSeenLeaves) {
   EXPECT_FLOAT_EQ(cells.known()[0].light.r, 2);
 }
 
+// Points of one cell share it, others do not; nor do the two sides of a thin wall, and cells of another width.
+TEST(GatherCells, CellsOfSpace) {
+  Cells cells;
+  const auto at = [](glm::vec3 p, glm::vec3 n = {0, 1, 0}, float width = 0.3f, glm::vec3 jitter = {}) {
+    return Sample{glm::vec3(1), width, p, 0, n, 0, jitter};  // 0.3 is rounded to 0.25
+  };
+  const auto same = [&](const Sample& a, const Sample& b) {
+    cells.clear();
+    cells.frame({a, b});
+    return cells.known().size() == 1;
+  };
+  const glm::vec3 up(0, 1, 0);
+  const Sample corner = at({0.01f, 0.01f, 0.01f});
+  EXPECT_TRUE(same(corner, at({0.24f, 0.24f, 0.24f})));
+  EXPECT_FALSE(same(corner, at({0.26f, 0.01f, 0.01f})));
+  EXPECT_FALSE(same(corner, at({-0.01f, 0.01f, 0.01f})));
+  EXPECT_TRUE(same(corner, at({0.26f, 0.01f, 0.01f}, up, 0.3f, {-0.1f, 0, 0})));
+  EXPECT_FALSE(same(at({0, 0, 0}), at({0, 0, 0}, -up)));
+  EXPECT_TRUE(same(at({0, 0, 0}, {0.1f, 0.9f, 0.1f}), at({0, 0, 0}, {-0.1f, 0.9f, 0.2f})));
+  EXPECT_TRUE(same(at({5, 5, 5}, up, 0.27f), at({5, 5, 5}, up, 0.3f)));
+  EXPECT_FALSE(same(at({5, 5, 5}, up, 0.6f), at({5, 5, 5}, up, 0.3f)));
+}
+
 // All cells that are wanted at the same time get a place, and none gets two.
 TEST(GatherCells, ManyCellsAtOnce) {
   Cells cells;
   constexpr uint32_t kMany = 20000;
   std::vector<Sample> samples;
-  for (uint32_t i = 0; i < 3 * kMany; ++i) samples.push_back({glm::vec3(float(1 + i % kMany)), i % kMany});
+  for (uint32_t i = 0; i < 3 * kMany; ++i)
+    samples.push_back(sampleOf(i % kMany, glm::vec3(float(1 + i % kMany))));
   cells.frame(samples);
   const auto known = cells.known();
   ASSERT_EQ(known.size(), size_t(kMany));

@@ -4,17 +4,15 @@
 #include <bit>
 #include <cmath>
 
-#include "fovea/error.h"
 #include "tests/passes/eye_scene.h"
 #include "tests/passes/vpl_scene.h"
+#include "tests/passes/where_rays_run.h"
 
 namespace fovea::test {
 namespace {
 
-// Rays on the host and on the device.
-class ContactRays : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Tracers, ContactRays, testing::Values("contact-rays-host", "contact-rays-device"),
-                         [](const auto& test) { return std::string(test.param).substr(13); });
+class ContactRays : public WhereRaysRun {};
+INSTANTIATE_TEST_SUITE_P(Rays, ContactRays, testing::Bool(), nameOfPlace);
 
 constexpr float kArea = 0.5f;
 constexpr int kSubsets = 4;  // of which a frame uses one for each pixel
@@ -78,11 +76,12 @@ std::vector<uint32_t> originOf(size_t pixels, bool (*fresh)(size_t)) {
   return origin;
 }
 
-Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& settings, const char* type) {
+Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& settings, bool onHost) {
   const int rays = settings.rays;
   std::vector<glm::vec2> history = settings.history;
   history.resize(vpls.size());
-  PassTest test(type);
+  PassTest test("contact-rays");
+  test.raysOnHost(onHost);
   test.param("filter", settings.filter);
   test.param("longer", kLonger);
   test.param("rays", rays);
@@ -260,8 +259,7 @@ TEST(ContactRaysBoth, GiveTheSameLight) {
                           .contact = mostPixels,
                           .frames = 3,
                           .fresh = everySecond};
-  const Result host = run(eye, vpls, settings, "contact-rays-host"),
-               device = run(eye, vpls, settings, "contact-rays-device");
+  const Result host = run(eye, vpls, settings, true), device = run(eye, vpls, settings, false);
   int different = 0;
   for (size_t i = 0; i < host.light.size(); ++i) {
     const glm::vec4 a = glm::unpackHalf4x16(host.light[i]), b = glm::unpackHalf4x16(device.light[i]);
@@ -290,7 +288,7 @@ TEST_P(ContactRays, SubsetsTakeTurns) {
 
 TEST_P(ContactRays, WithoutVplsThereIsNoLight) {
   const Eye eye({0.3f, 0.2f, 0});
-  PassTest test(ContactRays::GetParam());
+  RayPassTest test("contact-rays");
   test.param("longer", kLonger);
   test.viewSize(kWidth, kHeight).scene(eye.scene);
   test.image("contacts", VK_FORMAT_R32G32_UINT, kWidth, kHeight, 1, contactsOf(eye.seen, everyThird));
@@ -300,36 +298,6 @@ TEST_P(ContactRays, WithoutVplsThereIsNoLight) {
   for (const uint64_t value : test.values<uint64_t>("light"))
     EXPECT_TRUE(value == 0 || glm::unpackHalf4x16(value) == glm::vec4(0, 0, 0, kLonger));
   for (const glm::vec2 tally : test.values<glm::vec2>("tallies")) EXPECT_EQ(tally, glm::vec2(75, 37.5f));
-}
-
-void expectRefused(PassTest& test, const char* says) {
-  try {
-    test.run();
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::BadInput);
-    EXPECT_NE(std::string(e.what()).find(says), std::string::npos) << e.what();
-  }
-}
-
-TEST(ContactRaysHost, OriginHasTheSameSize) {
-  PassTest test("contact-rays-host");
-  test.viewSize(8, 8).scene(Eye({0, 0, 0}).scene);
-  test.image("contacts", VK_FORMAT_R32G32_UINT, 8, 8, 1, std::vector<glm::uvec2>(64));
-  test.image("origin", VK_FORMAT_R32_UINT, 8, 4, 1, std::vector<uint32_t>(32));
-  test.buffer("vpls", std::vector<scene::Vpl>(1), "Vpl");
-  test.buffer("history", std::vector<glm::vec2>(1), "VplTally");
-  expectRefused(test, "`origin` has 32 pixels, `contacts` 64");
-}
-
-TEST(ContactRaysHost, SizeIsTheViews) {
-  PassTest test("contact-rays-host");
-  test.param("longer", kLonger);
-  test.viewSize(16, 8).scene(Eye({0, 0, 0}).scene);
-  test.image("contacts", VK_FORMAT_R32G32_UINT, 8, 8, 1, std::vector<glm::uvec2>(64));
-  test.buffer("vpls", std::vector<scene::Vpl>(1), "Vpl");
-  test.buffer("history", std::vector<glm::vec2>(1), "VplTally");
-  expectRefused(test, "8x8 pixels, its view 16x8");
 }
 
 }  // namespace

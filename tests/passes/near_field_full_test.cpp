@@ -2,20 +2,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <vector>
 
 #include "framework/base/random.h"
-#include "framework/scene/frame.h"
-#include "framework/scene/rays/surface_tracer.h"
-#include "passes/near-field/near_field_tracer.h"
 #include "passes/path-trace/directions.h"
 #include "passes/path-trace/microfacets.h"
 #include "tests/passes/full_materials_reference.h"
+#include "tests/passes/near_field_run.h"
 #include "tests/passes/vpl_intensity_reference.h"
 
 namespace fovea::test {
 namespace {
+
+class NearFieldFull : public WhereRaysRun {};
+INSTANTIATE_TEST_SUITE_P(Rays, NearFieldFull, testing::Bool(), nameOfPlace);
 
 // Irradiance / pi at a pixel from what surfaces of one material reflect of a lamp, without shadows.
 glm::dvec3 mirroredBy(const Room& room, const scene::Light& lamp, const Seen& seen, uint32_t material) {
@@ -26,7 +28,9 @@ glm::dvec3 mirroredBy(const Room& room, const scene::Light& lamp, const Seen& se
   glm::dvec3 sum(0);
   for (int i = 0; i < kRays; ++i) {
     const glm::vec2 u((float(i) + 0.5f) / float(kRays), uniformFloat(uint32_t(i) * 2654435769u));
-    const glm::vec3 d = scene::cosineDirection(seen.normal, u);
+    const float r = std::sqrt(u.x), phi = glm::two_pi<float>() * u.y;
+    const glm::vec3 d = path_trace::toWorld(path_trace::frameAround(seen.normal),
+                                            {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x)});
     const RayHit hit = castRay(room.scene, room.geometry,
                                glm::dvec3(seen.position) + 1e-5 * glm::dvec3(seen.normal), glm::dvec3(d));
     if (!hit || room.geometry.triangles[hit.triangle].material() != material) continue;
@@ -42,7 +46,7 @@ glm::dvec3 mirroredBy(const Room& room, const scene::Light& lamp, const Seen& se
 
 // With full materials light comes from where surfaces send it: a polished metal wall beside the floor sends a lamp's
 // light towards some of the floor, and little to where the lamp hangs.
-TEST(NearFieldFull, MetalSendsLightInItsLobe) {
+TEST_P(NearFieldFull, MetalSendsLightInItsLobe) {
   scene::Scene s;
   const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), metal = addMaterial(s, glm::vec3(0.9f));
   s.materials[metal].metallic = 1;
@@ -52,16 +56,10 @@ TEST(NearFieldFull, MetalSendsLightInItsLobe) {
   s.materials[metal].doubleSided = true;
   s.lights = {pointLight({0.5f, 2, -2}, glm::vec3(10))};
   const Room room = lookInto(std::move(s), 8, glm::ivec2(8));
-  const scene::RayScene rays(room.scene, room.geometry);
-  const scene::Frame frame = scene::makeFrame(room.scene, room.geometry, glm::uvec2(8), 0, 1);
-  passes::NearFieldSettings settings;
-  settings.foveaRadius = 2;
-  settings.samples = 8192;
-  settings.area = 1e4f;  // nothing is left to discs
-  settings.bounces = 1;
-  settings.fullMaterials = true;
-  std::vector<glm::vec4> got(16);
-  passes::traceNearField(frame, frame.views[0], rays, settings, got);
+  NearFieldTest test(room.scene, glm::uvec2(8));
+  test.view("materials", "full").param("bounces", 1);
+  test.param("vpls", 1).param("share", 1e6);  // nothing is left to discs
+  const std::vector<glm::vec4> got = NearFieldMeans(test, 8, 1024).samples;
   int lit = 0;
   for (uint32_t i = 0; i < 16; ++i) {
     glm::dvec3 want(0);
@@ -80,29 +78,26 @@ TEST(NearFieldFull, MetalSendsLightInItsLobe) {
 
 // The contribution of an emissive lamp to the mean under the lobe of each pixel: the integral of the microfacets'
 // reflection of it. A floor that is seen at a grazing angle has its highlight towards the wall behind.
-TEST(NearFieldFull, LampsShineUnderLobes) {
+TEST_P(NearFieldFull, LampsShineUnderLobes) {
   scene::Scene s;
   const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), lamp = addMaterial(s, glm::vec3(0.0f));
   s.materials[lamp].emission = {4, 2, 1};
   addQuad(s, grey, {-3, -1, -6}, {0, 0, 6}, {6, 0, 0});
   addQuad(s, lamp, {-1, 0.2f, -6}, {2, 0, 0}, {0, 1, 0});
   const Room room = lookInto(std::move(s), 8, glm::ivec2(8));
-  const scene::RayScene rays(room.scene, room.geometry);
-  const scene::Frame frame = scene::makeFrame(room.scene, room.geometry, glm::uvec2(8), 0, 1);
-  const scene::View& view = frame.views[0];
+  const scene::View view = scene::makeView(room.scene.cameras[0], glm::uvec2(8), room.geometry);
   for (const float roughness : {0.4f, 0.6f, 0.9f}) {
     const auto half = [](glm::vec4 v) { return glm::packHalf4x16(v); };
     const std::vector<uint64_t> normal(64, half({0, 1, 0, 1})),
         specular(64, half({0.001f, 0.001f, 0.001f, roughness}));
-    passes::NearFieldSettings settings;
-    settings.foveaRadius = 2;
-    settings.samples = 4096;
-    settings.area = 1e-6f;  // nothing is left but the lamp
-    settings.fullMaterials = true;
-    settings.normal = normal;
-    settings.specular = specular;
-    std::vector<glm::vec4> diffuse(16), gloss(16);
-    passes::traceNearField(frame, view, rays, settings, diffuse, gloss);
+    NearFieldTest test(room.scene, glm::uvec2(8));
+    test.view("materials", "full")
+        .param("vpls", 1 << 20)
+        .param("share", 0.01);  // nothing is left but the lamp
+    test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, normal);
+    test.image("gbuffer.specular", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, specular);
+    const NearFieldMeans means(test, 4, 1024);
+    const std::vector<glm::vec4>&diffuse = means.samples, &gloss = means.gloss;
     int lit = 0;
     double highest = 0;
     for (uint32_t i = 0; i < 16; ++i) {

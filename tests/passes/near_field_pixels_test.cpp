@@ -8,6 +8,7 @@
 
 #include "fovea/error.h"
 #include "tests/passes/vpl_intensity_reference.h"
+#include "tests/passes/where_rays_run.h"
 
 namespace fovea::test {
 namespace {
@@ -15,11 +16,8 @@ namespace {
 constexpr glm::ivec2 kSize(24, 16);
 constexpr float kArea = 0.3f;
 
-// Rays on the host and on the device.
-class NearFieldPixels : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Tracers, NearFieldPixels,
-                         testing::Values("near-field-pixels-host", "near-field-pixels-device"),
-                         [](const auto& test) { return std::string(test.param).substr(18); });
+class NearFieldPixels : public WhereRaysRun {};
+INSTANTIATE_TEST_SUITE_P(Rays, NearFieldPixels, testing::Bool(), nameOfPlace);
 
 // Walls that emit {1, 2, 4} and reflect half of what they get: with light of up to two reflections they send 1.75 times
 // as much.
@@ -64,8 +62,8 @@ TEST_P(NearFieldPixels, OnlyWhereItIsNotKnown) {
     mask.push_back(i % 3 == 0 ? 0 : 255);
     before.push_back(i % 2 == 0 ? known : unknown);
   }
-  PassTest test(GetParam());
-  constexpr int kSamples = 1024;
+  RayPassTest test("near-field-pixels");
+  constexpr int kSamples = 256;
   test.param("samples", kSamples);
   wire(test, room.scene, mask, before);
   test.run();
@@ -101,7 +99,7 @@ TEST_P(NearFieldPixels, OnlyWhereItIsNotKnown) {
 // In a block of 4 x 4 pixels no single ray makes one pixel brighter than all others.
 TEST_P(NearFieldPixels, NoFireflies) {
   const size_t count = size_t(kSize.x) * kSize.y;
-  PassTest test(GetParam());
+  RayPassTest test("near-field-pixels");
   wire(test, shiningRoom().scene, std::vector<uint8_t>(count, 255), std::vector<uint64_t>(count));
   test.run();
   const auto light = test.values<uint64_t>("near_field");
@@ -123,7 +121,7 @@ TEST_P(NearFieldPixels, BackgroundAndEmptyScenesAreLeftAsTheyAre) {
   const std::vector<uint8_t> mask(size_t(kSize.x) * kSize.y, 255);
   const std::vector<uint64_t> before(mask.size(), glm::packHalf4x16({1, 2, 3, 0}));
   for (const scene::Scene& scene : {wall, scene::Scene{}}) {
-    PassTest test(GetParam());
+    RayPassTest test("near-field-pixels");
     wire(test, scene, mask, before);
     test.run();
     EXPECT_EQ(test.values<uint64_t>("near_field"), before);
@@ -131,7 +129,7 @@ TEST_P(NearFieldPixels, BackgroundAndEmptyScenesAreLeftAsTheyAre) {
 }
 
 TEST_P(NearFieldPixels, SizeIsTheViews) {
-  PassTest test(GetParam());
+  RayPassTest test("near-field-pixels");
   wire(test, shiningRoom().scene, std::vector<uint8_t>(size_t(kSize.x) * kSize.y),
        std::vector<uint64_t>(size_t(kSize.x) * kSize.y));
   test.viewSize(8, 8);

@@ -1,116 +1,191 @@
-// Tests the lobes under which pass near-field finds light: against the formula, and in a white furnace.
+// Tests the lobes under which pass near-field finds light: against the formula, and under a white sky.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/packing.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <memory>
+#include <vector>
 
-#include "framework/scene/rays/surface_tracer.h"
-#include "passes/near-field/receiver_lobe.h"
+#include "framework/base/random.h"
+#include "framework/scene/environment/environment_map.h"
 #include "passes/path-trace/directions.h"
 #include "tests/passes/full_materials_reference.h"
+#include "tests/passes/near_field_run.h"
+#include "tests/references/blocks.h"
+#include "tests/support/shapes.h"
 
 namespace fovea::test {
 namespace {
 
-using passes::ReceiverLobe;
+class ReceiverLobe : public WhereRaysRun {};
+INSTANTIATE_TEST_SUITE_P(Rays, ReceiverLobe, testing::Bool(), nameOfPlace);
 
-const glm::vec3 kNormal = glm::normalize(glm::vec3(0.3f, 1, -0.2f));
-constexpr int kDirections = 400000;
+constexpr glm::uvec2 kSize(32, 24);
+const glm::vec3 kUp(0, 1, 0);
 
-glm::vec3 toEye(float cosine) {
-  const glm::vec3 across = glm::normalize(glm::cross(kNormal, glm::vec3(1, 0, 0)));
-  return cosine * kNormal + std::sqrt(1 - cosine * cosine) * across;
+// What the G-buffer says of a pixel of a floor that the eye looks down on.
+struct Lobe {
+  float f0 = 0.04f, roughness = 0.5f;
+  glm::vec3 normal = kUp;
+};
+
+// A sample of the floor: how much it responds to the light that it gets, in units of irradiance / pi.
+struct Response {
+  glm::vec3 position, out;  // out: unit, to the eye
+  float response, light;    // light: irradiance / pi
+  double cosine() const { return double(out.y); }
+};
+
+// The floor, from grazing to steep.
+scene::Scene floorInView() {
+  scene::Scene s;
+  addQuad(s, addMaterial(s, glm::vec3(0)), {-500, 0, 500}, {1000, 0, 0}, {0, 0, -1000});
+  scene::Camera& camera = s.cameras.emplace_back();
+  camera.position = {0, 1, 0};
+  camera.orientation = glm::angleAxis(-0.7f, glm::vec3(1, 0, 0));
+  camera.verticalFov = 1;
+  return s;
 }
 
-// cosine: between the normal and the direction to the eye.
-ReceiverLobe lobe(float f0, float roughness, float cosine) {
-  return {glm::vec4(kNormal, 1), glm::vec4(glm::vec3(f0), roughness), toEye(cosine)};
+std::vector<Response> responsesOf(const scene::Scene& s, int rays, const Lobe& lobe) {
+  NearFieldTest test(s, kSize);
+  const size_t pixels = kSize.x * kSize.y;
+  test.view("materials", "full").param("first_samples", rays);
+  test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, kSize.x, kSize.y, 1,
+             std::vector<uint64_t>(pixels, glm::packHalf4x16(glm::vec4(lobe.normal, 1))));
+  test.image("gbuffer.specular", VK_FORMAT_R16G16B16A16_SFLOAT, kSize.x, kSize.y, 1,
+             std::vector<uint64_t>(pixels, glm::packHalf4x16(glm::vec4(glm::vec3(lobe.f0), lobe.roughness))));
+  const std::vector<glm::vec4> light = test.samples(), gloss = test.texels("gloss");
+  const scene::View& view = test.lastFrame().views[0];
+  std::vector<Response> result;
+  for (uint32_t i = 0; i < light.size(); ++i) {
+    const glm::uvec2 block(i % (kSize.x / 2), i / (kSize.x / 2));
+    const glm::uvec2 pixel = 2u * block + passes::samplePixel(0, 2, block);
+    const glm::vec3 ray = glm::normalize(view.rayDirection(glm::vec2(pixel) + 0.5f));
+    EXPECT_LT(ray.y, 0);
+    EXPECT_GT(light[i].g, 0);
+    result.push_back({view.eye - ray * (view.eye.y / ray.y), -ray, gloss[i].g / light[i].g, light[i].g});
+  }
+  return result;
 }
 
-// With the irradiance measured by the same normal.
-float respond(const ReceiverLobe& l, glm::vec3 direction) {
-  return l.response(direction, glm::dot(kNormal, direction));
+// The only light is a panel that is small and far away, in this direction.
+std::vector<Response> responsesTo(glm::vec3 direction, const Lobe& lobe) {
+  scene::Scene s = floorInView();
+  const uint32_t panel = addMaterial(s, glm::vec3(0));
+  s.materials[panel].emission = glm::vec3(1e4f);
+  s.materials[panel].doubleSided = true;
+  const glm::mat3 axes = scene::orthonormalFrame(direction);
+  addQuad(s, panel, 400.0f * direction - axes[0] - axes[1], 2.0f * axes[0], 2.0f * axes[1]);
+  return responsesOf(s, 1, lobe);
+}
+glm::vec3 toPanel(glm::vec3 direction, const Response& r) {
+  return glm::normalize(400.0f * direction - r.position);
 }
 
-TEST(ReceiverLobe, AddsUpToOneOverAllDirections) {
+const glm::vec3 kDirections[] = {glm::normalize(glm::vec3(0.2f, 0.5f, -1)),
+                                 glm::normalize(glm::vec3(1, 1, 1)),
+                                 glm::normalize(glm::vec3(-1, 0.3f, -0.2f))};
+
+// What microfacets reflect of light that they scatter once, times pi and divided by its cosine and by their albedo.
+double microfacets(glm::dvec3 n, glm::dvec3 v, glm::dvec3 d, float roughness) {
+  const double alpha = double(roughness) * double(roughness), a2 = alpha * alpha;
+  const glm::dvec3 h = glm::normalize(d + v);
+  const double nh = glm::dot(n, h), nv = glm::dot(n, v), nl = glm::dot(n, d);
+  const double density = a2 / (glm::pi<double>() * std::pow(nh * nh * (a2 - 1) + 1, 2));
+  const auto smith = [&](double c) { return std::sqrt(a2 + (1 - a2) * c * c); };
+  const double albedo = double(path_trace::AlbedoTable::schlick().at(float(nv), roughness).ofMirror());
+  return glm::pi<double>() * density * 0.5 / (nl * smith(nv) + nv * smith(nl)) / albedo;
+}
+
+// Both outputs are half floats, each rounded by up to 5e-4.
+TEST_P(ReceiverLobe, IsThatOfTheMicrofacets) {
+  const Lobe lobe{1e-4f, 0.5f};  // so little that none is scattered twice
+  for (const glm::vec3 direction : kDirections)
+    for (const Response& r : responsesTo(direction, lobe)) {
+      const double want = microfacets(kUp, r.out, toPanel(direction, r), lobe.roughness);
+      EXPECT_NEAR(r.response, want, 4e-3 * want) << r.cosine();
+    }
+}
+
+// A white metal, whose microfacets scatter everything in the end.
+TEST_P(ReceiverLobe, HasWhatIsScatteredMoreThanOnce) {
+  const path_trace::BsdfParameters white = bsdfParameters(glm::vec3(1), 1, 1);
+  for (const glm::vec3 direction : kDirections)
+    for (const Response& r : responsesTo(direction, {1, 1})) {
+      const glm::mat3 frame = path_trace::frameAround(kUp);
+      const path_trace::Bsdf bsdf(white, path_trace::toLocal(frame, r.out));
+      const glm::vec3 to = toPanel(direction, r);
+      const double want =
+          glm::pi<double>() * double(bsdf.evaluate(path_trace::toLocal(frame, to)).x) / double(to.y);
+      EXPECT_NEAR(r.response, want, 0.01 * want) << r.cosine();
+    }
+}
+
+scene::Scene underWhiteSky() {
+  scene::Scene s = floorInView();
+  s.environmentMap = std::make_shared<scene::EnvironmentMap>(4, 2, std::vector(8, glm::vec3(1)));
+  return s;
+}
+
+double meanResponse(const std::vector<Response>& responses) {
+  double sum = 0;
+  for (const Response& r : responses) sum += double(r.response) / double(responses.size());
+  return sum;
+}
+
+TEST_P(ReceiverLobe, AddsUpToOneOverAllDirections) {
   for (const float f0 : {0.04f, 0.9f})
-    for (const float roughness : {0.4f, 0.6f, 0.8f, 1.0f})
-      for (const float cosine : {0.1f, 0.4f, 1.0f}) {
-        const ReceiverLobe l = lobe(f0, roughness, cosine);
-        double sum = 0;
-        for (uint32_t i = 0; i < kDirections; ++i)
-          sum += double(respond(l, scene::cosineDirection(kNormal, scene::streamSequence(7, i))));
-        EXPECT_NEAR(sum / kDirections, 1, 0.015) << f0 << " " << roughness << " " << cosine;
-      }
+    for (const float roughness : {0.4f, 0.7f, 1.0f})
+      EXPECT_NEAR(meanResponse(responsesOf(underWhiteSky(), 256, {f0, roughness})), 1, 0.015)
+          << f0 << " " << roughness;
 }
 
 // A normal map bends the normal by which light counts. Of an even light what is beneath the surface is lost, and up to
 // 0.04 because of the bound on what the least cosines may count.
-TEST(ReceiverLobe, AddsUpToOneAroundABentNormal) {
+TEST_P(ReceiverLobe, AddsUpToOneAroundABentNormal) {
   for (const float tilt : {0.15f, 0.4f})
-    for (const float roughness : {0.4f, 0.7f, 1.0f})
-      for (const float cosine : {0.3f, 0.7f, 1.0f}) {
-        const ReceiverLobe l = lobe(0.04f, roughness, cosine);
-        const glm::vec3 flat = std::cos(tilt) * kNormal + std::sin(tilt) * toEye(0);
-        double sum = 0, beneath = 0;
-        for (uint32_t i = 0; i < kDirections; ++i) {
-          const glm::vec2 u = scene::streamSequence(7, i);
-          const glm::vec3 direction = scene::cosineDirection(flat, u),
-                          bent = scene::cosineDirection(kNormal, u);
-          sum += double(l.response(direction, glm::dot(flat, direction)));
-          beneath += glm::dot(flat, bent) < 0 ? double(respond(l, bent)) : 0;
+    for (const float roughness : {0.4f, 0.7f, 1.0f}) {
+      const glm::vec3 bent = glm::normalize(glm::vec3(0.3f * std::sin(tilt), std::cos(tilt), std::sin(tilt)));
+      const std::vector<Response> responses = responsesOf(underWhiteSky(), 256, {0.04f, roughness, bent});
+      double beneath = 0;
+      constexpr uint32_t kDirectionCount = 200;
+      for (const Response& r : responses)
+        for (uint32_t i = 0; i < kDirectionCount; ++i) {
+          const float u = (float(i) + 0.5f) / kDirectionCount, v = uniformFloat(i * 2654435769u);
+          const glm::vec3 local(std::sqrt(u) * std::cos(glm::two_pi<float>() * v),
+                                std::sqrt(u) * std::sin(glm::two_pi<float>() * v), std::sqrt(1 - u));
+          const glm::vec3 d = path_trace::toWorld(path_trace::frameAround(bent), local);
+          if (d.y < 0)
+            beneath += microfacets(bent, r.out, d, roughness) / kDirectionCount / double(responses.size());
         }
-        EXPECT_NEAR((sum + beneath) / kDirections, 1, 0.05) << tilt << " " << roughness << " " << cosine;
-      }
-}
-
-TEST(ReceiverLobe, IsThatOfTheMicrofacets) {
-  const float roughness = 0.5f, cosine = 0.6f;
-  const double alpha = double(roughness) * double(roughness);
-  const glm::dvec3 n(kNormal), v(toEye(cosine));
-  const double albedo = double(path_trace::AlbedoTable::schlick().at(cosine, roughness).ofMirror());
-  const ReceiverLobe l = lobe(1e-4f, roughness, cosine);  // so little that none is scattered twice
-  for (uint32_t i = 0; i < 50; ++i) {
-    const glm::vec3 direction = scene::cosineDirection(kNormal, scene::streamSequence(3, i));
-    const glm::dvec3 d(direction), h = glm::normalize(d + v);
-    const double nh = glm::dot(n, h), nv = glm::dot(n, v), nl = glm::dot(n, d), a2 = alpha * alpha;
-    const double density = a2 / (glm::pi<double>() * std::pow(nh * nh * (a2 - 1) + 1, 2));
-    const auto smith = [&](double c) { return std::sqrt(a2 + (1 - a2) * c * c); };
-    const double want = glm::pi<double>() * density * 0.5 / (nl * smith(nv) + nv * smith(nl)) / albedo;
-    EXPECT_NEAR(respond(l, direction), want, 2e-3 * want) << i;
-  }
-}
-
-// A white metal, whose microfacets scatter everything in the end.
-TEST(ReceiverLobe, HasWhatIsScatteredMoreThanOnce) {
-  path_trace::BsdfParameters white = bsdfParameters(glm::vec3(1), 1, 1);
-  for (const float cosine : {0.2f, 0.6f, 1.0f}) {
-    const glm::mat3 frame = path_trace::frameAround(kNormal);
-    const path_trace::Bsdf bsdf(white, path_trace::toLocal(frame, toEye(cosine)));
-    const ReceiverLobe l = lobe(1, 1, cosine);
-    for (uint32_t i = 0; i < 50; ++i) {
-      const glm::vec3 direction = scene::cosineDirection(kNormal, scene::streamSequence(3, i));
-      const double want = glm::pi<double>() * double(bsdf.evaluate(path_trace::toLocal(frame, direction)).x) /
-                          double(glm::dot(kNormal, direction));
-      EXPECT_NEAR(respond(l, direction), want, 0.01 * want) << cosine << " " << i;
+      EXPECT_NEAR(meanResponse(responses) + beneath, 1, 0.05) << tilt << " " << roughness;
     }
-  }
 }
 
-TEST(ReceiverLobe, IsNoSmootherThanWhatIsTraced) {
-  const glm::vec3 direction = glm::reflect(-toEye(0.7f), kNormal);
-  EXPECT_EQ(respond(lobe(0.04f, 0.05f, 0.7f), direction), respond(lobe(0.04f, 0.3f, 0.7f), direction));
-  EXPECT_EQ(respond(lobe(0.9f, 0.05f, 0.7f), direction), respond(lobe(0.9f, 0.7f, 0.7f), direction));
-  EXPECT_GT(respond(lobe(0.04f, 0.3f, 0.7f), direction), respond(lobe(0.04f, 0.4f, 0.7f), direction));
+TEST_P(ReceiverLobe, IsNoSmootherThanWhatIsTraced) {
+  const glm::vec3 direction = kDirections[0];
+  const auto responses = [&](float f0, float roughness) {
+    std::vector<float> list;
+    for (const Response& r : responsesTo(direction, {f0, roughness})) list.push_back(r.response);
+    return list;
+  };
+  EXPECT_EQ(responses(0.04f, 0.05f), responses(0.04f, 0.3f));
+  EXPECT_EQ(responses(0.9f, 0.05f), responses(0.9f, 0.7f));
+  EXPECT_GT(std::ranges::max(responses(0.04f, 0.3f)), std::ranges::max(responses(0.04f, 0.4f)));
 }
 
-TEST(ReceiverLobe, LightFromBehindAddsNothing) { EXPECT_EQ(respond(lobe(0.04f, 0.5f, 0.7f), -kNormal), 0); }
+TEST_P(ReceiverLobe, LightFromBehindAddsNothing) {
+  const glm::vec3 away = glm::normalize(glm::vec3(0, 0.5f, 1));
+  for (const Response& r : responsesTo(kDirections[0], {0.04f, 0.5f, away})) EXPECT_EQ(r.response, 0);
+}
 
-TEST(ReceiverLobe, WithoutOneLightIsThatOfTheDiffuseLayer) {
-  for (const glm::vec3 direction : {kNormal, -kNormal, toEye(0.2f)}) {
-    EXPECT_EQ(respond(ReceiverLobe(), direction), 1);
-    EXPECT_EQ(respond(lobe(0, 0.5f, 0.7f), direction), 1);
-  }
+TEST_P(ReceiverLobe, WithoutOneLightIsThatOfTheDiffuseLayer) {
+  for (const Response& r : responsesTo(kDirections[1], {0, 0.5f})) EXPECT_EQ(r.response, 1);
 }
 
 }  // namespace

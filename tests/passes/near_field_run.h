@@ -1,0 +1,58 @@
+// Runs pass near-field alone, for its tests.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "framework/scene/frame.h"
+#include "tests/passes/where_rays_run.h"
+
+namespace fovea::test {
+
+// Looks at a scene. By default the fovea fills the picture.
+struct NearFieldTest : RayPassTest {
+  NearFieldTest(const scene::Scene& s, glm::uvec2 size) : RayPassTest("near-field") {
+    viewSize(size.x, size.y).scene(s).view("fovea_radius", 2.0);
+  }
+
+  // Of an output of the last frame.
+  std::vector<glm::vec4> texels(const std::string& port) const {
+    const std::vector<float> channels = floats(port);
+    std::vector<glm::vec4> result;
+    for (size_t i = 0; i < channels.size(); i += 4)
+      result.emplace_back(channels[i], channels[i + 1], channels[i + 2], channels[i + 3]);
+    return result;
+  }
+  std::vector<glm::vec4> samples(uint32_t frames = 1) {
+    run(frames);
+    return texels("samples");
+  }
+  // Area of the discs in the last frame, m^2.
+  float area() const { return values<glm::vec4>("spread")[0].x; }
+};
+
+// Means of outputs over so many frames, each after a cut of the camera and with rays of its own.
+struct NearFieldMeans {
+  std::vector<glm::vec4> samples, gloss;
+
+  NearFieldMeans(NearFieldTest& test, uint32_t frames, uint32_t raysEach) {
+    test.param("first_samples", int(raysEach)).beforeFrame([raysEach](PassTest&, scene::Frame& frame) {
+      frame.cameraCut = true;
+      frame.index *= raysEach;
+    });
+    for (uint32_t i = 0; i < frames; ++i) {
+      test.run();
+      add(samples, test.texels("samples"), float(frames));
+      add(gloss, test.texels("gloss"), float(frames));
+    }
+  }
+
+ private:
+  static void add(std::vector<glm::vec4>& sum, const std::vector<glm::vec4>& texels, float frames) {
+    sum.resize(texels.size(), glm::vec4(0));
+    for (size_t i = 0; i < texels.size(); ++i) sum[i] += texels[i] / frames;
+  }
+};
+
+}  // namespace fovea::test
