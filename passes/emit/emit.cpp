@@ -1,7 +1,6 @@
 // VPLs by light tracing (Keller, "Instant Radiosity", 1997): the baseline for foveated placement.
 #include "fovea/pass.h"
 #include "passes/bundles.h"
-#include "passes/materials.h"
 #include "shaders/records/light_paths.h"
 #include "shaders/records/vpl.h"
 
@@ -48,7 +47,6 @@ void declareParameters(PassDeclaration& d) {
   d.parameter("averaged_frames", integer(1, 1, 65536),
               "number of frames averaged into the final image; each VPL's area (kernel `disc`) is divided "
               "by it, as if all VPLs were in one frame");
-  declareMaterials(d, "`full` lets metals keep their colour");
 }
 
 class Emit : public Pass {
