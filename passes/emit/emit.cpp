@@ -1,7 +1,6 @@
 // VPLs by light tracing (Keller, "Instant Radiosity", 1997): the baseline for foveated placement.
 #include "fovea/pass.h"
 #include "passes/bundles.h"
-#include "passes/materials.h"
 #include "shaders/records/light_paths.h"
 #include "shaders/records/vpl.h"
 

@@ -3,17 +3,16 @@
 
 #include <cmath>
 
-#include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/reservoir_reference.h"
+#include "tests/passes/where_rays_run.h"
+#include "tests/references/blocks.h"
 #include "tests/support/sky.h"
 
 namespace fovea::test {
 namespace {
 
-// Rays on the host and on the device.
-class GiSamples : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Tracers, GiSamples, testing::Values("gi-samples-host", "gi-samples-device"),
-                         [](const auto& test) { return std::string(test.param).substr(11); });
+class GiSamples : public WhereRaysRun {};
+INSTANTIATE_TEST_SUITE_P(Rays, GiSamples, testing::Bool(), nameOfPlace);
 
 constexpr glm::ivec2 kSize(29, 21);  // not whole blocks
 
@@ -25,7 +24,7 @@ struct Samples {
 Samples samplesOf(const scene::Scene& scene, glm::ivec2 size, int depth, int spacing = 1, uint32_t frames = 1,
                   int paths = 1) {
   Samples result;
-  PassTest test(GiSamples::GetParam());
+  RayPassTest test("gi-samples");
   test.viewSize(uint32_t(size.x), uint32_t(size.y)).scene(scene);
   test.param("depth", depth).param("spacing", spacing).param("paths", paths);
   for (uint32_t frame = 0; frame < frames; ++frame) {
@@ -103,8 +102,8 @@ TEST_P(GiSamples, EqualsARayAndDirectLight) {
       EXPECT_NEAR(r.radiance[c], want, 2e-3 * want + 1e-6);
     }
   }
-  // Where two walls meet in the middle of a pixel, the device may see the other one.
-  EXPECT_LE(edges, GiSamples::GetParam() == std::string("gi-samples-host") ? 0 : 1);
+  // Where two walls meet in the middle of a pixel, the pass may see the other one.
+  EXPECT_LE(edges, 1);
   EXPECT_NEAR(cosines / lit, 2.0 / 3, 0.03);  // about five standard errors
   EXPECT_GT(lit, 400);
   EXPECT_GT(dark, 20);
@@ -194,7 +193,7 @@ TEST_P(GiSamples, SkyIsADistantPoint) {
   const Samples samples = samplesOf(room.scene, room.size, 4, 1, 4);
   EXPECT_NEAR(ratio(room, samples, [&](const Seen&) { return expected; }), 1, 0.03);
   // On the device the map is in half floats, and angles are approximate.
-  const float tolerance = GiSamples::GetParam() == std::string("gi-samples-host") ? 1e-2f : 6e-2f;
+  const float tolerance = GetParam() ? 1e-2f : 6e-2f;
   int found = 0;
   for (size_t i = 0; i < room.pixels.size(); ++i) {
     const Reservoir& r = samples.frames[0][i];
@@ -230,7 +229,7 @@ TEST_P(GiSamples, OutsideOfTheFoveaBlocksTakeTurns) {
   const glm::vec2 gaze(0.6f, 0.35f);
   std::vector<int> turns(room.pixels.size());
   for (uint32_t n = 1; n <= 4; ++n) {
-    PassTest test(GiSamples::GetParam());
+    RayPassTest test("gi-samples");
     test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).scene(room.scene);
     test.param("depth", 3).param("outside_spacing", 2).view("fovea_radius", 0.25);
     test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; });
@@ -249,7 +248,7 @@ TEST_P(GiSamples, OutsideOfTheFoveaBlocksTakeTurns) {
 }
 
 TEST_P(GiSamples, EmptySceneHasNone) {
-  PassTest test(GiSamples::GetParam());
+  RayPassTest test("gi-samples");
   test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y));
   test.run();
   for (const Reservoir& r : test.values<Reservoir>("reservoirs")) {

@@ -5,9 +5,9 @@
 #include <bit>
 #include <glm/gtc/packing.hpp>
 
-#include "tests/references/octahedral.h"
-#include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/deferred_reference.h"
+#include "tests/references/blocks.h"
+#include "tests/references/octahedral.h"
 
 namespace fovea::test {
 namespace {

@@ -6,19 +6,17 @@
 
 #include "fovea/error.h"
 #include "framework/base/random.h"
-#include "passes/probe-rays/probe_tracer.h"
 #include "tests/passes/probe_reference.h"
 #include "tests/passes/ray_reference.h"
+#include "tests/passes/where_rays_run.h"
 #include "tests/support/shapes.h"
 #include "tests/support/sky.h"
 
 namespace fovea::test {
 namespace {
 
-// Rays on the host and on the device.
-class ProbeRays : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Tracers, ProbeRays, testing::Values("probe-rays-host", "probe-rays-device"),
-                         [](const auto& test) { return std::string(test.param).substr(11); });
+class ProbeRays : public WhereRaysRun {};
+INSTANTIATE_TEST_SUITE_P(Rays, ProbeRays, testing::Bool(), nameOfPlace);
 
 constexpr int kSide = 4, kRoom = kSide * kSide * kSide, kRays = 64;
 
@@ -50,7 +48,7 @@ struct Traced {
 };
 
 Traced trace(const scene::Scene& s, const Probes& probes, uint32_t frames = 1, double spacing = 0) {
-  PassTest test(ProbeRays::GetParam());
+  RayPassTest test("probe-rays");
   test.scene(s).viewSize(8, 8).param("probes", kSide).param("rays", kRays).param("spacing", spacing);
   probes.wire(test, "probes");
   test.run(frames);
@@ -58,26 +56,41 @@ Traced trace(const scene::Scene& s, const Probes& probes, uint32_t frames = 1, d
           test.values<glm::vec4>("rays.hits"), test.counter("rays"), test.counter("inside")};
 }
 
-TEST(ProbeTracer, CellsCoverTheBounds) {
-  const scene::ProbeGrid even = passes::probeGrid({-2, -2, -2}, {2, 2, 2}, 4, 0);
+// The grid over the bounds that two opposite corners make.
+scene::ProbeGrid gridOver(glm::vec3 low, glm::vec3 high, int probes, double spacing) {
+  scene::Scene s;
+  addQuad(s, addMaterial(s, glm::vec3(0.5f)), low, {high.x - low.x, 0, 0}, {0, 0, 0.5f * (high.z - low.z)});
+  addQuad(s, 0, high, {low.x - high.x, 0, 0}, {0, 0, 0.5f * (low.z - high.z)});
+  PassTest test("probe-rays");
+  test.scene(s).viewSize(8, 8).param("probes", probes).param("rays", 8).param("spacing", spacing);
+  evenProbes(glm::vec3(1), probes * probes * probes).wire(test, "probes");
+  test.run();
+  return test.values<scene::ProbeGrid>("rays.grid")[0];
+}
+
+TEST(ProbeGrids, CellsCoverTheBounds) {
+  const scene::ProbeGrid even = gridOver({-2, -2, -2}, {2, 2, 2}, 4, 0);
   EXPECT_EQ(glm::uvec3(even.columns, even.rows, even.layers), glm::uvec3(4));
   EXPECT_EQ(even.spacing, 1);
   EXPECT_EQ(even.origin, glm::vec3(-1.5f));
-  const scene::ProbeGrid flat = passes::probeGrid({0, 0, 1}, {8, 0, 4}, 16, 0);
+  const scene::ProbeGrid flat = gridOver({0, 0, 1}, {8, 0, 4}, 16, 0);
   EXPECT_EQ(glm::uvec3(flat.columns, flat.rows, flat.layers), glm::uvec3(16, 1, 6));
   EXPECT_EQ(flat.origin, glm::vec3(0.25f, 0, 1.25f));
-  const scene::ProbeGrid wide =
-      passes::probeGrid({0, 0, 0}, {8, 5, 8}, 16, 2);  // cells of 2 m, half a one beyond
+  const scene::ProbeGrid wide = gridOver({0, 0, 0}, {8, 5, 8}, 16, 2);  // cells of 2 m, half a one beyond
   EXPECT_EQ(glm::uvec3(wide.columns, wide.rows, wide.layers), glm::uvec3(4, 3, 4));
   EXPECT_EQ(wide.origin, glm::vec3(1, 0.5f, 1));
 }
 
 // Unit vectors whose first and second moments are those of the sphere, others in every frame.
-TEST_P(ProbeRays, DirectionsLieEvenlyAndTurn) {
-  std::vector<glm::vec4> before(256), now(256);
-  passes::probeDirections(1, 0, before);
+TEST(ProbeGrids, DirectionsLieEvenlyAndTurn) {
+  PassTest test("probe-rays");
+  test.scene(roomWithBox()).viewSize(8, 8).param("probes", 1).param("rays", 256);
+  evenProbes(glm::vec3(1), 1).wire(test, "probes");
+  test.run();
+  auto before = test.values<glm::vec4>("rays.directions");
   for (uint32_t frame = 1; frame < 20; ++frame) {
-    passes::probeDirections(1, frame, now);
+    test.run();
+    auto now = test.values<glm::vec4>("rays.directions");
     glm::dvec3 mean(0);
     glm::dmat3 moments(0);
     double nearest = 2;
@@ -151,7 +164,7 @@ TEST_P(ProbeRays, WithoutFeedback) {
   s.materials[m].emission = glm::vec3(1);
   addRoom(s, walls, 2);
   s.cameras.emplace_back();
-  PassTest test(ProbeRays::GetParam());
+  RayPassTest test("probe-rays");
   test.scene(s).viewSize(8, 8).param("probes", kSide).param("rays", 256).param("feedback", false);
   evenProbes(glm::vec3(100)).wire(test, "probes");
   test.run();
@@ -179,7 +192,7 @@ TEST_P(ProbeRays, OutsideOfTheFoveaProbesTraceFewer) {
   const glm::vec2 size(128, 64), gaze(0.8f, 0.3f);
   const scene::View view = scene::makeView(s.cameras[0], size, scene::flatten(s));
   for (const float radius : {0.05f, 0.2f}) {
-    PassTest test(ProbeRays::GetParam());
+    RayPassTest test("probe-rays");
     test.scene(s).viewSize(128, 64).param("probes", 8).param("rays", kRays);
     test.param("outside_share", 4).view("fovea_radius", radius);
     test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; });
@@ -218,7 +231,7 @@ TEST_P(ProbeRays, TheSkyBringsItsLight) {
   s.cameras.emplace_back();
   const Traced traced = trace(s, evenProbes(glm::vec3(1)));
   // On the device the map is in half floats, and angles are approximate.
-  const float tolerance = ProbeRays::GetParam() == std::string("probe-rays-host") ? 1e-4f : 1e-2f;
+  const float tolerance = GetParam() ? 1e-4f : 1e-2f;
   int open = 0;
   for (size_t i = 0; i < traced.hits.size(); ++i) {
     const glm::vec4 hit = traced.hits[i];
@@ -231,23 +244,42 @@ TEST_P(ProbeRays, TheSkyBringsItsLight) {
   EXPECT_LT(open, kRoom * kRays);
 }
 
-TEST(ProbeTracer, TheSameWhateverTheThreads) {
-  const scene::Scene s = roomWithBox();
-  const scene::Geometry g = scene::flatten(s);
-  const scene::RayScene rays(s, g);
-  const scene::Frame frame = scene::makeFrame(s, g, {8, 8}, 0, 1);
-  const Probes probes = evenProbes(glm::vec3(1));
-  passes::ProbeRaySettings settings;
-  settings.grid = passes::probeGrid(g.boundsMin, g.boundsMax, kSide, 0);
-  settings.previous = {probes.irradiance, probes.distance, probes.states};
-  std::vector<glm::vec4> directions(kRays), one(kRoom * kRays), five(kRoom * kRays);
-  passes::probeDirections(1, 0, directions);
-  settings.threads = 1;
-  const auto first = passes::traceProbeRays(frame, frame.views[0], rays, settings, directions, one);
-  settings.threads = 5;
-  const auto second = passes::traceProbeRays(frame, frame.views[0], rays, settings, directions, five);
-  EXPECT_EQ(first.rays, second.rays);
-  EXPECT_EQ(std::memcmp(one.data(), five.data(), one.size() * sizeof one[0]), 0);
+// Whatever thread traces which of them.
+TEST_P(ProbeRays, TheSameInEveryRun) {
+  const Traced one = trace(roomWithBox(), evenProbes(glm::vec3(1))),
+               other = trace(roomWithBox(), evenProbes(glm::vec3(1)));
+  EXPECT_EQ(one.rays, other.rays);
+  EXPECT_EQ(std::memcmp(one.hits.data(), other.hits.data(), one.hits.size() * sizeof one.hits[0]), 0);
+}
+
+// Surfaces reflect the light that the probes around them bring there, seen from where the ray comes.
+TEST_P(ProbeRays, SurfacesReflectTheLightOfTheProbes) {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), walls[6] = {grey, grey, grey, grey, grey, grey};
+  addRoom(s, walls, 2);
+  s.cameras.emplace_back();
+  const Probes probes = knownProbes(kRoom, 1);
+  const Traced traced = trace(s, probes);
+  for (size_t i = 0; i < traced.hits.size(); ++i) {
+    const size_t probe = i / kRays;
+    const glm::dvec3 from = glm::dvec3(traced.grid.origin) +
+                            glm::dvec3(probe % kSide, probe / kSide % kSide, probe / kSide / kSide) +
+                            glm::dvec3(probes.states[probe].offset),
+                     direction(traced.directions[i % kRays]);
+    if (probes.states[probe].inside > 0 && i % kRays % 4 != 0) continue;
+    // The nearest wall ahead.
+    glm::dvec3 normal(0);
+    double t = 1e9;
+    for (int axis = 0; axis < 3; ++axis)
+      if (const double at = (std::copysign(2.0, direction[axis]) - from[axis]) / direction[axis]; at < t) {
+        t = at;
+        normal = glm::dvec3(0);
+        normal[axis] = -std::copysign(1.0, direction[axis]);
+      }
+    const glm::dvec3 want =
+        0.5 * probeLight(traced.grid, probes, from + t * direction, normal, -direction, 0.25);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(traced.hits[i][c], want[c], 3e-3 * want[c]) << i;
+  }
 }
 
 TEST_P(ProbeRays, NothingToMeet) {

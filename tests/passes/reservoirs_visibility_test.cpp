@@ -5,15 +5,13 @@
 
 #include "fovea/error.h"
 #include "tests/passes/reservoir_reference.h"
+#include "tests/passes/where_rays_run.h"
 
 namespace fovea::test {
 namespace {
 
-// Rays on the host and on the device.
-class ReservoirsVisibility : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Tracers, ReservoirsVisibility,
-                         testing::Values("reservoirs-visibility-host", "reservoirs-visibility-device"),
-                         [](const auto& test) { return std::string(test.param).substr(22); });
+class ReservoirsVisibility : public WhereRaysRun {};
+INSTANTIATE_TEST_SUITE_P(Rays, ReservoirsVisibility, testing::Bool(), nameOfPlace);
 
 constexpr glm::ivec2 kSize(27, 18);
 constexpr int kSources = 3;
@@ -88,7 +86,7 @@ Sees seesPoint(const Room& room, const SurfacePixel& from, const Reservoir& r) {
 // previous: whether sources on things that move see what the pixel sees.
 void expectPlainRays(bool previous) {
   const Input in;
-  PassTest test(ReservoirsVisibility::GetParam());
+  RayPassTest test("reservoirs-visibility");
   test.param("previous", previous);
   in.wire(test);
   test.run();
@@ -129,7 +127,7 @@ TEST_P(ReservoirsVisibility, SourcesThatMovedSeeTheSample) { expectPlainRays(tru
 TEST_P(ReservoirsVisibility, RefusesSourcesOfAnotherSize) {
   Input in;
   in.sources.resize(in.sources.size() - size_t(kSize.y));
-  PassTest test(ReservoirsVisibility::GetParam());
+  RayPassTest test("reservoirs-visibility");
   in.wire(test, uint32_t(kSources * kSize.x - 1));
   EXPECT_THROW(test.run(), Error);
 }
@@ -137,7 +135,7 @@ TEST_P(ReservoirsVisibility, RefusesSourcesOfAnotherSize) {
 TEST_P(ReservoirsVisibility, NobodySeesAnythingInAnEmptyScene) {
   Input in;
   in.room.scene = {};
-  PassTest test(ReservoirsVisibility::GetParam());
+  RayPassTest test("reservoirs-visibility");
   in.wire(test);
   test.run();
   for (const uint32_t bits : test.values<uint32_t>("seen")) EXPECT_EQ(bits, 0u);

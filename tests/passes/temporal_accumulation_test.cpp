@@ -5,8 +5,8 @@
 
 #include "fovea/error.h"
 #include "framework/base/random.h"
-#include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/eye_scene.h"
+#include "tests/references/blocks.h"
 
 namespace fovea::test {
 namespace {
