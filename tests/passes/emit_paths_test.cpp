@@ -8,11 +8,11 @@
 #include "framework/base/low_discrepancy.h"
 #include "framework/base/random.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/paraboloid.h"
 #include "shaders/records/light_paths.h"
 #include "shaders/records/vpl.h"
 #include "tests/passes/emitted_vpls.h"
 #include "tests/passes/ray_reference.h"
+#include "tests/references/paraboloid.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {
