@@ -69,7 +69,8 @@ void main() {
   bool leavesFirst = !v.there || !onSamePlane(at.position, at.normal, v.position, v.normal);
   if (leavesFirst) v = at;
 #if LOBES
-  lobe = receiverLobe(
+  if (v.there)
+    lobe = receiverLobe(
       ivec2(min(pixelOf(leavesFirst ? constants.frameIndex : constants.frameIndex + constants.part, corner, side),
                 viewSize() - 1u)),
       v.position);
