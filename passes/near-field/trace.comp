@@ -69,10 +69,8 @@ void main() {
   bool leavesFirst = !v.there || !onSamePlane(at.position, at.normal, v.position, v.normal);
   if (leavesFirst) v = at;
 #if LOBES
-  lobe = receiverLobe(
-      ivec2(min(pixelOf(leavesFirst ? constants.frameIndex : constants.frameIndex + constants.part, corner, side),
-                viewSize() - 1u)),
-      v.position);
+  uint turn_ = leavesFirst ? constants.frameIndex : constants.frameIndex + constants.part;
+  if (v.there) lobe = receiverLobe(ivec2(min(pixelOf(turn_, corner, side), viewSize() - 1u)), v.position);
 #endif
   NearLight sum = NearLight(vec3(0.0), vec3(0.0));
   for (uint i = 0u; at.there && i < rays; ++i) {

@@ -21,6 +21,14 @@ vec3 lightFrom(LightRecord light, Receiver r, vec3 origin) {
   return visibility(Ray(origin, e.direction, 0.0, end)) * response(r, e);
 }
 
+// The light of a pixel that shows a surface.
+vec3 tracedLight(ivec2 p) {
+  Receiver r = receiverAt(p);
+  vec3 sum = vec3(0.0), origin = vec3(r.place) + (r.face + normalize(view.eye - vec3(r.place))) * rayEpsilon();
+  for (uint i = 0u; i < frame.lightCount; ++i) sum += lightFrom(lights[i], r, origin);
+  return radianceOf(r, sum);
+}
+
 void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID);
   if (any(greaterThanEqual(p, imageSize(direct)))) return;
@@ -30,9 +38,6 @@ void main() {
   vec4 before = imageLoad(direct, p);
   if (before.a == 1.0) return;
   atomicAdd(counters.pixels, 1u);
-  Receiver r = receiverAt(p);
-  vec3 sum = vec3(0.0), origin = vec3(r.place) + (r.face + normalize(view.eye - vec3(r.place))) * rayEpsilon();
-  uint lightCount = r.place.w > 0.0 ? frame.lightCount : 0u;
-  for (uint i = 0u; i < lightCount; ++i) sum += lightFrom(lights[i], r, origin);
-  imageStore(direct, p, vec4(r.place.w > 0.0 ? radianceOf(r, sum) : vec3(before), 1.0));
+  bool background = !(imageLoad(gbufferPosition, p).w > 0.0);
+  imageStore(direct, p, vec4(background ? vec3(before) : tracedLight(p), 1.0));
 }

@@ -7,6 +7,7 @@
 
 #include "framework/scene/environment/environment_map.h"
 #include "tests/passes/near_field_run.h"
+#include "tests/passes/where_rays_run.h"
 #include "tests/support/shapes.h"
 #include "tests/support/sky.h"
 
@@ -41,7 +42,7 @@ void setArea(PassTest& test, double area) {
   test.param("vpls", kVpls).param("share", area * kVpls / 20000);
 }
 
-TEST_P(NearFieldEnvironment, BringsAllOfItsLight) {
+TEST(NearFieldEnvironmentLight, BringsAllOfItsLight) {
   const Map map = skyWithSun();
   const glm::dvec3 want = irradianceFrom(*map, {0, 1, 0}) / glm::pi<double>();
   for (const double area : {0.05, 5.0}) {
@@ -55,7 +56,7 @@ TEST_P(NearFieldEnvironment, BringsAllOfItsLight) {
 }
 
 // Single samples of an open sky hardly differ, though its colours do, as each is a choice among several directions.
-TEST_P(NearFieldEnvironment, OpenSkyHasLittleNoise) {
+TEST(NearFieldEnvironmentLight, OpenSkyHasLittleNoise) {
   std::vector<glm::vec3> texels;  // bright towards one side, and at the horizon
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 32; ++x)
@@ -75,8 +76,8 @@ TEST_P(NearFieldEnvironment, OpenSkyHasLittleNoise) {
 // On a floor that is alone no ray meets a surface that could say how long rays are.
 TEST_P(NearFieldEnvironment, LightsWhatIsAlone) {
   const Map map = skyWithSun();
-  NearFieldTest test(floorUnder(map, 0.5f), glm::uvec2(16));
-  test.param("first_samples", 1024);
+  NearFieldTest test(floorUnder(map, 0.5f), glm::uvec2(16), GetParam());
+  test.param("first_samples", 256);
   const glm::dvec3 want = irradianceFrom(*map, {0, 1, 0}) / glm::pi<double>();
   for (const uint32_t frames : {1, 2}) {  // the second has a ray a sample
     const glm::dvec3 mean = meanOf(test.samples(frames));
@@ -89,10 +90,10 @@ TEST_P(NearFieldEnvironment, DoesNotShineThroughBlackBacks) {
   scene::Scene s =
       floorUnder(std::make_shared<scene::EnvironmentMap>(4, 2, std::vector(8, glm::vec3(1))), 0.5f);
   s.cameras[0].position.y = 0.5f;
-  NearFieldTest open(s, glm::uvec2(16));
+  NearFieldTest open(s, glm::uvec2(16), GetParam());
   EXPECT_NEAR(meanOf(open.samples()).g, 1, 0.05);
   addQuad(s, 0, {-500, 1, 500}, {1000, 0, 0}, {0, 0, -1000});
-  NearFieldTest closed(s, glm::uvec2(16));
+  NearFieldTest closed(s, glm::uvec2(16), GetParam());
   EXPECT_LT(meanOf(closed.samples()).g, 0.01);
 }
 
@@ -103,8 +104,8 @@ TEST_P(NearFieldEnvironment, SharesRaysWithSurfacesThatShine) {
   const uint32_t panel = addMaterial(s, glm::vec3(0));
   s.materials[panel].emission = {0, 1, 0};
   addQuad(s, panel, {-400, 0, -2}, {800, 0, 0}, {0, 800, 0});
-  NearFieldTest test(s, glm::uvec2(16));
-  test.param("first_samples", 1024);
+  NearFieldTest test(s, glm::uvec2(16), GetParam());
+  test.param("first_samples", 256);
   const glm::dvec3 mean = meanOf(test.samples());
   EXPECT_NEAR(mean.r, 0.5, 0.01);  // each fills half of the hemisphere
   EXPECT_NEAR(mean.g, 0.5, 0.01);
@@ -118,15 +119,15 @@ TEST_P(NearFieldEnvironment, ComesAlone) {
   s.materials[panel].emission = glm::vec3(20);
   addQuad(s, panel, {-50, 0, -2}, {100, 0, 0}, {0, 50, 0});
   s.lights = {pointLight({0, 2, 0}, glm::vec3(100))};
-  NearFieldTest test(s, glm::uvec2(16));
-  test.param("first_samples", 1024);
+  NearFieldTest test(s, glm::uvec2(16), GetParam());
+  test.param("first_samples", 256);
   test.param("light", "map");
   const glm::dvec3 mean = meanOf(test.samples());  // the panel hides a half or less
   EXPECT_GT(mean.r, 0.5);
   EXPECT_LT(mean.r, 1.0);
   EXPECT_NEAR(mean.g / mean.r, 2, 0.01);
   EXPECT_NEAR(mean.b / mean.r, 3, 0.015);
-  NearFieldTest none(s, glm::uvec2(16));
+  NearFieldTest none(s, glm::uvec2(16), GetParam());
   none.param("light", "none");
   EXPECT_EQ(meanOf(none.samples()), glm::dvec3(0));
 }

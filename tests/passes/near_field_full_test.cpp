@@ -16,9 +16,6 @@
 namespace fovea::test {
 namespace {
 
-class NearFieldFull : public WhereRaysRun {};
-INSTANTIATE_TEST_SUITE_P(Rays, NearFieldFull, testing::Bool(), nameOfPlace);
-
 // Irradiance / pi at a pixel from what surfaces of one material reflect of a lamp, without shadows.
 glm::dvec3 mirroredBy(const Room& room, const scene::Light& lamp, const Seen& seen, uint32_t material) {
   constexpr int kRays = 8000;
@@ -46,7 +43,7 @@ glm::dvec3 mirroredBy(const Room& room, const scene::Light& lamp, const Seen& se
 
 // With full materials light comes from where surfaces send it: a polished metal wall beside the floor sends a lamp's
 // light towards some of the floor, and little to where the lamp hangs.
-TEST_P(NearFieldFull, MetalSendsLightInItsLobe) {
+TEST(NearFieldFull, MetalSendsLightInItsLobe) {
   scene::Scene s;
   const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), metal = addMaterial(s, glm::vec3(0.9f));
   s.materials[metal].metallic = 1;
@@ -78,7 +75,7 @@ TEST_P(NearFieldFull, MetalSendsLightInItsLobe) {
 
 // The contribution of an emissive lamp to the mean under the lobe of each pixel: the integral of the microfacets'
 // reflection of it. A floor that is seen at a grazing angle has its highlight towards the wall behind.
-TEST_P(NearFieldFull, LampsShineUnderLobes) {
+TEST(NearFieldFull, LampsShineUnderLobes) {
   scene::Scene s;
   const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), lamp = addMaterial(s, glm::vec3(0.0f));
   s.materials[lamp].emission = {4, 2, 1};

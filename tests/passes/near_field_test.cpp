@@ -12,6 +12,7 @@
 #include "framework/base/random.h"
 #include "tests/passes/near_field_run.h"
 #include "tests/passes/vpl_intensity_reference.h"
+#include "tests/passes/where_rays_run.h"
 #include "tests/references/blocks.h"
 
 namespace fovea::test {
@@ -59,7 +60,7 @@ double meanLength(const Room& room) {
 Room look(scene::Scene s, glm::ivec2 size) { return lookInto(std::move(s), 8, size); }
 
 // All of what the walls emit, and of what they reflect the part that discs leave out.
-TEST_P(NearField, ThePartThatDiscsLeaveOut) {
+TEST(NearFieldLight, ThePartThatDiscsLeaveOut) {
   const Room room = look(shiningRoom(true), glm::ivec2(8));
   constexpr uint32_t kFrames = 4, kRays = 1024,
                      kSamples = kFrames * kRays;  // a quarter for each pixel of a block
@@ -119,7 +120,7 @@ double fromRectangle(glm::dvec2 half, double h, double x, double y) {
 
 // Large, small and thin lamps before a wall, close to it and far from it, alone and among others that are hidden in
 // boxes. The wall and the lamps are black, so nothing else adds light, and the eye looks through their backs.
-TEST_P(NearField, AllLightOfALamp) {
+TEST(NearFieldLight, AllLightOfALamp) {
   const struct {
     glm::vec2 half;
     float height;
@@ -168,7 +169,7 @@ TEST_P(NearField, SamplesDoNotMixSurfaces) {
   addQuad(s, lamp, {8.5f, -9, -2.4f}, {0, 0, 3}, {0, 18, 0});    // shines to the left
   addBox(s, black, {0.05f, -9, -2.999f}, {0.06f, 9, -1.5f});     // hides the lamp from the left half
   const Room room = look(std::move(s), glm::ivec2(36, 32));
-  NearFieldTest test(room.scene, glm::uvec2(36, 32));
+  NearFieldTest test(room.scene, glm::uvec2(36, 32), GetParam());
   test.view("fovea_radius", 0.001).param("spacing", 8).param("first_samples", 32);
   const std::vector<glm::vec4> got = test.samples();
   int dark = 0, mixed = 0;
@@ -200,7 +201,7 @@ TEST_P(NearField, NarrowBlocksCloseToALamp) {
   addQuad(s, grey, {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});
   addQuad(s, lamp, {-0.4f, -0.4f, -2.99f}, {0.8f, 0, 0}, {0, 0.8f, 0});
   const Room room = look(std::move(s), glm::ivec2(128));
-  NearFieldTest test(room.scene, glm::uvec2(128));
+  NearFieldTest test(room.scene, glm::uvec2(128), GetParam());
   test.view("fovea_radius", 0.001).param("spacing", 8).param("first_samples", 1);
   const std::vector<glm::vec4> got = test.samples();
   int wide = 0, narrow = 0;
@@ -224,7 +225,7 @@ TEST_P(NearField, NarrowBlocksCloseToALamp) {
 }
 
 // Few rays go far, and yet on average they go as far as if all of them did.
-TEST_P(NearField, DiscsAreAsLargeAsDistancesSay) {
+TEST(NearFieldLight, DiscsAreAsLargeAsDistancesSay) {
   const Room room = look(shiningRoom(true), glm::ivec2(64));
   const double length = meanLength(room);
   for (const int vpls : {100, 1000}) {
@@ -245,7 +246,7 @@ TEST_P(NearField, SamplesWhereTheEyeLooks) {
   addBox(s, m, {-0.8f, -0.8f, -4}, {0.8f, 0.8f, -3});
   addBox(s, m, {-0.8f, -1.6f, -3.2f}, {0.8f, -0.8f, -2});
   const Room room = look(std::move(s), glm::ivec2(70, 50));  // tiles extend past the image
-  NearFieldTest test(room.scene, glm::uvec2(70, 50));
+  NearFieldTest test(room.scene, glm::uvec2(70, 50), GetParam());
   test.view("fovea_radius", 0.1).param("spacing", 8).param("first_samples", 1).param("saccade_samples", 3);
   test.beforeFrame([](PassTest&, scene::Frame& frame) {  // in some, several rays leave the same pixel
     frame.saccade = frame.index % 4 < 2 ? 1.0f : 0.0f;
@@ -290,7 +291,7 @@ glm::dvec2 meanAndVariance(const std::vector<float>& samples) {
 }
 
 // Outside the fovea single rays, many of which bring nothing, become means over what lies on the same wall.
-TEST_P(NearField, BlocksOutsideTheFoveaShareTheirRays) {
+TEST(NearFieldLight, BlocksOutsideTheFoveaShareTheirRays) {
   const auto firstSamples = [](double foveaRadius) {
     NearFieldTest test(shiningRoom(false), glm::uvec2(256));  // the far wall fills the picture
     test.view("fovea_radius", foveaRadius).param("spacing", 8).param("first_samples", 1).param("share", 25.0);
@@ -323,7 +324,7 @@ void lookAtFirstTile(NearFieldTest& test, int spacing) {
 
 TEST_P(NearField, EveryPixelOfABlockHasItsTurn) {
   for (const uint32_t spacing : {4u, 8u}) {
-    NearFieldTest test(shiningRoom(false), glm::uvec2(4 * spacing));
+    NearFieldTest test(shiningRoom(false), glm::uvec2(4 * spacing), GetParam());
     lookAtFirstTile(test, int(spacing));
     std::vector<std::set<std::pair<uint32_t, uint32_t>>> seen(4 * spacing * spacing);
     for (uint32_t turn = 0; turn < spacing * spacing; ++turn) {
@@ -347,7 +348,7 @@ TEST_P(NearField, EveryPixelOfABlockHasItsTurn) {
 
 // Every column and every row of two neighbouring blocks.
 TEST_P(NearField, NarrowStripsAreMetInEveryFrame) {
-  NearFieldTest test(shiningRoom(false), glm::uvec2(8));
+  NearFieldTest test(shiningRoom(false), glm::uvec2(8), GetParam());
   test.param("first_samples", 1);
   for (uint32_t turn = 0; turn < 4; ++turn) {
     const auto pixels = sampled(test);
@@ -364,7 +365,7 @@ TEST_P(NearField, NarrowStripsAreMetInEveryFrame) {
 
 TEST_P(NearField, TheSameEveryTime) {
   const auto once = [] {
-    NearFieldTest test(shiningRoom(true), glm::uvec2(32));
+    NearFieldTest test(shiningRoom(true), glm::uvec2(32), GetParam());
     test.view("fovea_radius", 0.25).run(4);
     return std::tuple(test.bytes("samples"), test.area(), test.counter("rays"));
   };
@@ -374,7 +375,7 @@ TEST_P(NearField, TheSameEveryTime) {
 // A new fovea takes more rays for each sample, all of them from the pixel whose turn it is; outside nothing changes.
 TEST_P(NearField, MoreRaysForANewFovea) {
   const auto second = [](float saccade) {
-    NearFieldTest test(shiningRoom(true), glm::uvec2(32));
+    NearFieldTest test(shiningRoom(true), glm::uvec2(32), GetParam());
     test.view("fovea_radius", 0.25).param("spacing", 8).param("saccade_samples", 4);
     test.beforeFrame([&](PassTest&, scene::Frame& f) { f.saccade = f.index == 1 ? saccade : 0.0f; });
     return test.samples(2);
@@ -394,7 +395,7 @@ TEST_P(NearField, MoreRaysForANewFovea) {
 }
 
 // When light changes, samples in the fovea are of more rays, and what the cache knows of the old light is forgotten.
-TEST_P(NearField, MoreRaysForChangedLight) {
+TEST(NearFieldLight, MoreRaysForChangedLight) {
   struct Counters {
     double shaded, gathered;
   };
@@ -417,7 +418,7 @@ TEST_P(NearField, MoreRaysForChangedLight) {
 }
 
 TEST_P(NearField, SpacingIsAPowerOfTwo) {
-  NearFieldTest test(shiningRoom(false), glm::uvec2(16));
+  NearFieldTest test(shiningRoom(false), glm::uvec2(16), GetParam());
   test.param("spacing", 6);
   try {
     test.run();
@@ -436,7 +437,7 @@ TEST_P(NearField, RefusesAnotherGBuffer) {
   } cases[] = {{8, 8, "`gbuffer.normal` has 8x8 pixels, its view has 16x16"},
                {16, 1, "those of the G-buffer are not"}};
   for (const auto& [normal, specular, says] : cases) {
-    NearFieldTest test(shiningRoom(false), glm::uvec2(16));
+    NearFieldTest test(shiningRoom(false), glm::uvec2(16), GetParam());
     test.view("materials", "full");
     test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, normal, normal, 1,
                std::vector<uint64_t>(normal * normal));

@@ -21,9 +21,6 @@
 namespace fovea::test {
 namespace {
 
-class ReceiverLobe : public WhereRaysRun {};
-INSTANTIATE_TEST_SUITE_P(Rays, ReceiverLobe, testing::Bool(), nameOfPlace);
-
 constexpr glm::uvec2 kSize(32, 24);
 const glm::vec3 kUp(0, 1, 0);
 
@@ -103,7 +100,7 @@ double microfacets(glm::dvec3 n, glm::dvec3 v, glm::dvec3 d, float roughness) {
 }
 
 // Both outputs are half floats, each rounded by up to 5e-4.
-TEST_P(ReceiverLobe, IsThatOfTheMicrofacets) {
+TEST(ReceiverLobe, IsThatOfTheMicrofacets) {
   const Lobe lobe{1e-4f, 0.5f};  // so little that none is scattered twice
   for (const glm::vec3 direction : kDirections)
     for (const Response& r : responsesTo(direction, lobe)) {
@@ -113,7 +110,7 @@ TEST_P(ReceiverLobe, IsThatOfTheMicrofacets) {
 }
 
 // A white metal, whose microfacets scatter everything in the end.
-TEST_P(ReceiverLobe, HasWhatIsScatteredMoreThanOnce) {
+TEST(ReceiverLobe, HasWhatIsScatteredMoreThanOnce) {
   const path_trace::BsdfParameters white = bsdfParameters(glm::vec3(1), 1, 1);
   for (const glm::vec3 direction : kDirections)
     for (const Response& r : responsesTo(direction, {1, 1})) {
@@ -138,7 +135,7 @@ double meanResponse(const std::vector<Response>& responses) {
   return sum;
 }
 
-TEST_P(ReceiverLobe, AddsUpToOneOverAllDirections) {
+TEST(ReceiverLobe, AddsUpToOneOverAllDirections) {
   for (const float f0 : {0.04f, 0.9f})
     for (const float roughness : {0.4f, 0.7f, 1.0f})
       EXPECT_NEAR(meanResponse(responsesOf(underWhiteSky(), 256, {f0, roughness})), 1, 0.015)
@@ -147,7 +144,7 @@ TEST_P(ReceiverLobe, AddsUpToOneOverAllDirections) {
 
 // A normal map bends the normal by which light counts. Of an even light what is beneath the surface is lost, and up to
 // 0.04 because of the bound on what the least cosines may count.
-TEST_P(ReceiverLobe, AddsUpToOneAroundABentNormal) {
+TEST(ReceiverLobe, AddsUpToOneAroundABentNormal) {
   for (const float tilt : {0.15f, 0.4f})
     for (const float roughness : {0.4f, 0.7f, 1.0f}) {
       const glm::vec3 bent = glm::normalize(glm::vec3(0.3f * std::sin(tilt), std::cos(tilt), std::sin(tilt)));
@@ -167,7 +164,7 @@ TEST_P(ReceiverLobe, AddsUpToOneAroundABentNormal) {
     }
 }
 
-TEST_P(ReceiverLobe, IsNoSmootherThanWhatIsTraced) {
+TEST(ReceiverLobe, IsNoSmootherThanWhatIsTraced) {
   const glm::vec3 direction = kDirections[0];
   const auto responses = [&](float f0, float roughness) {
     std::vector<float> list;
@@ -179,12 +176,12 @@ TEST_P(ReceiverLobe, IsNoSmootherThanWhatIsTraced) {
   EXPECT_GT(std::ranges::max(responses(0.04f, 0.3f)), std::ranges::max(responses(0.04f, 0.4f)));
 }
 
-TEST_P(ReceiverLobe, LightFromBehindAddsNothing) {
+TEST(ReceiverLobe, LightFromBehindAddsNothing) {
   const glm::vec3 away = glm::normalize(glm::vec3(0, 0.5f, 1));
   for (const Response& r : responsesTo(kDirections[0], {0.04f, 0.5f, away})) EXPECT_EQ(r.response, 0);
 }
 
-TEST_P(ReceiverLobe, WithoutOneLightIsThatOfTheDiffuseLayer) {
+TEST(ReceiverLobe, WithoutOneLightIsThatOfTheDiffuseLayer) {
   for (const Response& r : responsesTo(kDirections[1], {0, 0.5f})) EXPECT_EQ(r.response, 1);
 }
 
