@@ -50,13 +50,18 @@ double meanDifference(const std::vector<float>& a, const std::vector<float>& b) 
 // host looks up, and rounding decides which rays pass glass: pictures differ as if they had other random numbers.
 TEST_P(DeviceRaysInGraphs, GiveThePicturesOfTheHost) {
   const scene::Scene scene = movingScene();
-  const auto render = [&](const char* name, std::vector<std::string> set, uint32_t seed = 1) {
-    set.push_back(std::string("view.materials=") + GetParam());
-    set.push_back("vpl_count=200");
-    return runGraph(name, scene, {.size = {96, 72}, .frames = 4, .seed = seed, .set = std::move(set)});
+  const auto render = [&](const char* name, session::RaysOn rays, uint32_t seed = 1) {
+    return runGraph(name, scene,
+                    {.size = {96, 72},
+                     .frames = 4,
+                     .seed = seed,
+                     .set = {std::string("view.materials=") + GetParam(), "vpl_count=200"},
+                     .rays = rays});
   };
-  const GraphRun host = render("foveal", {"rays=host"}), device = render("foveal", {"rays=device"}),
-                 maps = render("foveal_no_shadow_rays", {}), other = render("foveal", {"rays=host"}, 2);
+  using session::RaysOn;
+  const GraphRun host = render("foveal", RaysOn::Host), device = render("foveal", RaysOn::Device),
+                 maps = render("foveal_no_shadow_rays", RaysOn::Host),
+                 other = render("foveal", RaysOn::Host, 2);
   const int byRays = countDifferent(maps.outputs.at("direct"), host.outputs.at("direct"));
   EXPECT_GT(byRays, 20);
   EXPECT_LE(countDifferent(host.outputs.at("direct"), device.outputs.at("direct")), byRays / 4);

@@ -33,18 +33,20 @@ scene::Scene sceneToDraw() {
 }
 
 GraphRun render(const char* graph, const scene::Scene& scene, gpu::Device& device,
-                std::vector<std::string> set) {
-  return runGraph(graph, scene, {.size = {48, 40}, .frames = 2, .set = std::move(set), .device = &device});
+                std::vector<std::string> set, session::RaysOn rays) {
+  return runGraph(graph, scene,
+                  {.size = {48, 40}, .frames = 2, .set = std::move(set), .device = &device, .rays = rays});
 }
 
 // Draws with a device that does without features, and with one that has all of them.
 void expectTheSame(const char* graph, const scene::Scene& scene, const std::vector<std::string>& without,
-                   const std::vector<std::string>& set) {
+                   const std::vector<std::string>& set, session::RaysOn rays = session::RaysOn::Auto) {
   gpu::DeviceOptions options = testDeviceOptions();
   options.without = without;
   gpu::Device device(options);
   for (const auto& folder : shaderFolders()) device.shaders().addSearchPath(folder);
-  const GraphRun run = render(graph, scene, device, set), expected = render(graph, scene, testDevice(), set);
+  const GraphRun run = render(graph, scene, device, set, rays),
+                 expected = render(graph, scene, testDevice(), set, rays);
   for (const auto& [name, output] : expected.outputs)
     EXPECT_EQ(run.outputs.at(name).bytes, output.bytes) << graph << ", output " << name;
   EXPECT_EQ(device.validationMessages(), std::vector<std::string>{});
@@ -56,8 +58,8 @@ TEST(Without, TheSamePictures) {
     SCOPED_TRACE(feature);
     expectTheSame("direct", scene, {feature}, {"view.materials=full"});
   }
-  for (const char* rays : {"rays=host", "rays=device"})
-    expectTheSame("foveal", scene, gpu::dispensableFeatures(), {"vpl_count=32", rays});
+  for (const session::RaysOn rays : {session::RaysOn::Host, session::RaysOn::Device})
+    expectTheSame("foveal", scene, gpu::dispensableFeatures(), {"vpl_count=32"}, rays);
 }
 
 }  // namespace

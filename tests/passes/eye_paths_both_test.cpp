@@ -1,4 +1,4 @@
-// Compares eye paths that are traced on the device with those on the host.
+// Compares eye paths whose rays run on the device with those on the host.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,8 +22,9 @@ struct Result {
   double rays = 0;
 };
 
-Result run(const char* type, const std::string& materials, bool emission, uint32_t frames) {
-  PassTest test(type);
+Result run(bool onHost, const std::string& materials, bool emission, uint32_t frames) {
+  PassTest test("eye-paths");
+  test.raysOnHost(onHost);
   test.viewSize(48, 32).scene(sceneOfEverything(materials == "glass"));
   test.view("materials", materials == "diffuse" ? "diffuse" : "full")
       .param("emission", emission)
@@ -50,8 +51,8 @@ TEST(EyePathsBoth, FindTheSame) {
     for (const bool emission : {false, true})
       for (const uint32_t frames : {1u, 4u}) {
         const std::string what = materials + (emission ? " shining " : " ") + std::to_string(frames);
-        const Result host = run("eye-paths-host", materials, emission, frames),
-                     device = run("eye-paths-device", materials, emission, frames);
+        const Result host = run(true, materials, emission, frames),
+                     device = run(false, materials, emission, frames);
         int starts = 0, ends = 0, lit = 0;
         for (size_t i = 0; i < host.starts.size(); ++i) {
           const EyePathStart &a = host.starts[i], &b = device.starts[i];

@@ -9,6 +9,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
 #include "shaders/records/eye_paths.h"
+#include "tests/passes/where_rays_run.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {
@@ -16,10 +17,8 @@ namespace {
 
 using passes::EyePathEnd;
 
-// Rays on the host and on the device.
-class EyePathsChange : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Tracers, EyePathsChange, testing::Values("eye-paths-host", "eye-paths-device"),
-                         [](const auto& test) { return std::string(test.param).substr(10); });
+class EyePathsChange : public WhereRaysRun {};
+INSTANTIATE_TEST_SUITE_P(Rays, EyePathsChange, testing::Bool(), nameOfPlace);
 
 scene::Scene litRoom() {
   scene::Scene s;
@@ -35,7 +34,7 @@ scene::Scene litRoom() {
 // says of the change.
 struct AfterChange {
   AfterChange(uint32_t frames, float factor) {
-    PassTest test(EyePathsChange::GetParam());
+    RayPassTest test("eye-paths");
     test.param("paths", 500).param("points", 100).param("renew_frames", 1000).param("trace_frames", 4);
     test.viewSize(32, 32).scene(litRoom());
     test.beforeFrame([factor](PassTest&, scene::Frame& f) {
@@ -94,7 +93,7 @@ TEST_P(EyePathsChange, ChangedLightIsFoundAtOnce) {
 // makes of those of the scene.
 template <class Function>
 glm::vec4 changeAfter(uint32_t frames, const scene::Scene& scene, const Function& light, int points = 1000) {
-  PassTest test(EyePathsChange::GetParam());
+  RayPassTest test("eye-paths");
   test.param("paths", 4000).param("points", points).param("renew_frames", 1000);
   test.viewSize(64, 64).scene(scene);
   test.beforeFrame([&](PassTest&, scene::Frame& f) { light(f.lights, uint32_t(f.index)); });
@@ -109,7 +108,7 @@ TEST_P(EyePathsChange, LightThatMovesSteadilyAgesNothing) {
   scene::Scene lamps = litRoom();
   lamps.lights = {pointLight({-0.8f, 0, 0.5f}, {5, 5, 5}), pointLight({0.8f, 0, 0.5f}, {5, 5, 5})};
   const auto lightOf = [&](size_t lamp) {
-    PassTest test(EyePathsChange::GetParam());
+    RayPassTest test("eye-paths");
     test.param("paths", 4000).param("points", 1000).viewSize(64, 64).scene(lamps);
     test.beforeFrame([lamp](PassTest&, scene::Frame& f) { f.lights[1 - lamp].color = glm::vec3(0); });
     test.run(1);
@@ -171,7 +170,7 @@ TEST_P(EyePathsChange, LightThatGoesOneWayAges) {
 // What changes all the time has hardly any paths traced out of turn.
 TEST_P(EyePathsChange, SteadyChangesCostLittle) {
   const auto rays = [](float perFrame) {
-    PassTest test(EyePathsChange::GetParam());
+    RayPassTest test("eye-paths");
     test.param("paths", 500).param("points", 100).param("renew_frames", 1000).param("trace_frames", 4);
     test.viewSize(32, 32).scene(litRoom());
     test.beforeFrame([perFrame](PassTest&, scene::Frame& f) {
@@ -195,7 +194,7 @@ TEST_P(EyePathsChange, SlowSurfacesKeepTheirStarts) {
   addQuad(s, white, {-1.9f, -1.9f, -1.5f}, {3.8f, 0, 0}, {0, 3.8f, 0});
   s.nodes[mover.node].dynamic = true;
   s.movers = {mover};
-  PassTest test(EyePathsChange::GetParam());
+  RayPassTest test("eye-paths");
   test.param("paths", 2000).param("points", 500).param("renew_frames", 1000).viewSize(32, 32).scene(s);
   test.run(1);
   const double ends = test.counter("ends");
@@ -209,7 +208,7 @@ TEST_P(EyePathsChange, SlowSurfacesKeepTheirStarts) {
 
 // What the eye sees anew by looking elsewhere has not changed.
 TEST_P(EyePathsChange, OtherStartsAreNoChange) {
-  PassTest test(EyePathsChange::GetParam());
+  RayPassTest test("eye-paths");
   test.param("paths", 500).param("points", 100).viewSize(32, 32).scene(litRoom());
   test.beforeFrame([](PassTest&, scene::Frame& f) { f.views[0].gaze.x = f.index < 3 ? 0.5f : 0.12f; });
   test.run(4);
@@ -219,7 +218,7 @@ TEST_P(EyePathsChange, OtherStartsAreNoChange) {
 // Nor does a camera that walks past starts that stay change what their paths find, though it moves the origins of their
 // rays by as little as keeps these off the surface.
 TEST_P(EyePathsChange, AWalkingEyeIsNoChange) {
-  PassTest test(EyePathsChange::GetParam());
+  RayPassTest test("eye-paths");
   test.param("paths", 500).param("points", 100).param("stray", 0.25).viewSize(32, 32).scene(litRoom());
   test.beforeFrame([](PassTest&, scene::Frame& f) {
     scene::Camera camera;

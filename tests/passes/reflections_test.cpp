@@ -7,19 +7,18 @@
 
 #include "fovea/error.h"
 #include "framework/scene/environment/environment_map.h"
-#include "passes/near-field/near_field_tracer.h"
 #include "shaders/records/mirror.h"
 #include "tests/passes/deferred_reference.h"
 #include "tests/passes/scene_of_everything.h"
 #include "tests/passes/vpl_intensity_reference.h"
+#include "tests/passes/where_rays_run.h"
+#include "tests/references/blocks.h"
 
 namespace fovea::test {
 namespace {
 
-// Rays on the host and on the device.
-class Reflections : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Tracers, Reflections, testing::Values("reflections-host", "reflections-device"),
-                         [](const auto& test) { return std::string(test.param).substr(12); });
+class Reflections : public WhereRaysRun {};
+INSTANTIATE_TEST_SUITE_P(Rays, Reflections, testing::Bool(), nameOfPlace);
 
 constexpr int kSide = 16, kTexels = kSide / 2;
 
@@ -63,7 +62,7 @@ TEST_P(Reflections, TheLightOfAClosedRoomUnderAnyLobe) {
   const Room room = lookInto(std::move(s), 8, glm::ivec2(kSide), 1.6f);
   for (const float roughness : {0.0f, 0.2f, 0.45f, 0.8f})
     for (const int bounces : {2, 3}) {
-      PassTest test(GetParam());
+      RayPassTest test("reflections");
       test.param("bounces", bounces).param("first_samples", 1024);
       wire(test, room, mirrorsOf(room.pixels, roughness)).run();
       const auto samples = samplesOf(test);
@@ -90,7 +89,7 @@ Room mirroredBox() {
 
 TEST_P(Reflections, WhatStandsBeforeAMirror) {
   const Room room = mirroredBox();
-  PassTest test(GetParam());
+  RayPassTest test("reflections");
   test.param("bounces", 1).param("first_samples", 256);
   wire(test, room, mirrorsOf(room.pixels, 0)).run();
   const auto samples = samplesOf(test);
@@ -127,7 +126,7 @@ TEST_P(Reflections, CodesOfTheSamples) {
   Room room = lookInto(std::move(s), 8, glm::ivec2(kSide));
   for (int i = 0; i < kSide * kSide; ++i) room.pixels[size_t(i)].there = i % kSide < kSide / 2;
   const auto texels = mirrorsOf(room.pixels, 0.1f);
-  PassTest test(GetParam());
+  RayPassTest test("reflections");
   wire(test, room, texels).run(2);
   const auto samples = samplesOf(test);
   for (size_t i = 0; i < samples.size(); ++i) {
@@ -146,7 +145,7 @@ TEST_P(Reflections, NeighboursShareTheirLight) {
     auto texels = mirrorsOf(room.pixels, 0.45f);
     for (uint32_t i = 0; i < texels.size(); ++i)
       if (alone && (i % kApart != 0 || i / kTexels % kApart != 0)) texels[i].x = 0;
-    PassTest many("reflections-host"), single(GetParam());
+    RayPassTest many("reflections"), single("reflections");
     many.param("bounces", 1).param("first_samples", 1024);
     single.param("bounces", 1).param("first_samples", 1).seed(2);
     wire(many, room, texels).run();
@@ -181,12 +180,12 @@ TEST_P(Reflections, TheSkyStaysOutOfGaps) {
     if (!behind(i)) continue;
     std::vector<glm::uvec4> one(texels.size(), glm::uvec4(0));
     one[i] = texels[i];
-    PassTest many("reflections-host");
+    RayPassTest many("reflections");
     many.param("first_samples", 1024);
     wire(many, room, one).run();
     want += double(samplesOf(many)[i].r);
   }
-  PassTest single(GetParam());
+  RayPassTest single("reflections");
   single.param("first_samples", 1);
   wire(single, room, texels);
   double light = 0;
@@ -203,7 +202,7 @@ TEST_P(Reflections, TheSkyStaysOutOfGaps) {
 
 TEST_P(Reflections, MirrorsOfAnotherViewAreRefused) {
   const Room room = closedRoom(false, 8, glm::ivec2(kSide));
-  PassTest test(GetParam());
+  RayPassTest test("reflections");
   test.viewSize(kSide + 2, kSide).scene(room.scene);
   test.image("mirrors", VK_FORMAT_R32G32B32A32_UINT, kTexels, kTexels, 1,
              std::vector<glm::uvec4>(kTexels * kTexels, glm::uvec4(0)));
@@ -222,7 +221,9 @@ TEST(ReflectionsBoth, SeeTheSame) {
       m.roughness = std::min(m.roughness, 0.3f);  // smoother than the rougher mirrors
     const Room room = lookInto(std::move(everything), 8, glm::ivec2(kSide));
     const auto mirrors = mirrorsOf(room.pixels, roughness);
-    PassTest host("reflections-host"), device("reflections-device");
+    PassTest host("reflections"), device("reflections");
+    host.raysOnHost(true);
+    device.raysOnHost(false);
     for (PassTest* test : {&host, &device}) {
       test->param("first_samples", 4);
       test->beforeFrame([](PassTest&, scene::Frame& frame) { frame.cameraCut = frame.index == 2; });

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "passes/eye-paths/eye_path_tracer.h"
 #include "tests/passes/vpl_intensity_scene.h"
+#include "tests/references/eye_paths.h"
 
 namespace fovea::test {
 namespace {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fovea/test.h"
+#include "framework/session/graph_run.h"
 
 namespace fovea::test {
 
@@ -20,7 +21,8 @@ struct GraphRunOptions {
   std::vector<std::string> set;      // "vpl_count=100"
   std::vector<std::string> outputs;  // names to read back; if empty, all images
   gpu::Device* device = nullptr;     // instead of testDevice()
-  bool everyFrame = false;           // read back after every frame: GraphRun::frames[i].outputs
+  session::RaysOn rays = session::RaysOn::Auto;
+  bool everyFrame = false;  // read back after every frame: GraphRun::frames[i].outputs
   std::function<void(scene::Frame&)> beforeFrame;
 };
 GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene,

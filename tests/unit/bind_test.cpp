@@ -191,25 +191,25 @@ TEST(Bind, TextsOfTheScene) {
               HasSubstr("parameter `kernel`: expected one of disc, clamp, found `$scene.kernel`"));
 }
 
-// The device says which of several types a pass has, unless --set does.
-TEST(Bind, TypesByTextsOfTheDevice) {
+// The scene says which of several types a pass has, unless --set does.
+TEST(Bind, TypesByTextsOfTheScene) {
   auto registry = basicRegistry();
-  for (const char* type : {"trace-host", "trace-device"}) {
+  for (const char* type : {"trace-lines", "trace-cones"}) {
     PassDeclaration d(type, "Traces");
     d.output("hits", buffer("Hit", 4), Usage::StorageWrite, "made");
     registry->add(d, nullptr);
   }
   Environment env = basicEnvironment(*registry);
-  const auto typeOf = [&](const std::string& device, const LoadOptions& options) {
-    env.texts = {{"device.rays", device}};
+  const auto typeOf = [&](const std::string& scene, const LoadOptions& options) {
+    env.texts = {{"scene.paths", scene}};
     Diagnostics messages;
-    const std::string text = R"({"parameters": {"rays": "$device.rays"},
-        "passes": {"t": {"type": "trace-$rays"}}, "outputs": {"o": "t"}})";
+    const std::string text = R"({"parameters": {"paths": "$scene.paths"},
+        "passes": {"t": {"type": "trace-$paths"}}, "outputs": {"o": "t"}})";
     return bind(loadText(text, "g.json", options, messages), env, messages).passes[0].declaration->type;
   };
-  EXPECT_EQ(typeOf("host", {}), "trace-host");
-  EXPECT_EQ(typeOf("device", {}), "trace-device");
-  EXPECT_EQ(typeOf("device", {{{"rays", "host"}}, {}}), "trace-host");
+  EXPECT_EQ(typeOf("lines", {}), "trace-lines");
+  EXPECT_EQ(typeOf("cones", {}), "trace-cones");
+  EXPECT_EQ(typeOf("cones", {{{"paths", "lines"}}, {}}), "trace-lines");
   EXPECT_THROW(typeOf("moon", {}), Error);
 }
 

@@ -170,6 +170,12 @@ std::string printBytes(uint64_t bytes) {
   return fmt::format("{:.2f} GiB", static_cast<double>(bytes) / (1024.0 * 1024 * 1024));
 }
 
+// Whether the CPU works at the pass, or at steps of it.
+static bool isOnHost(const BoundGraph& graph, uint32_t pass) {
+  const PassDeclaration& d = *graph.passes[pass].declaration;
+  return d.kind == PassKind::Host || (d.tracesRays && graph.raysOnHost);
+}
+
 std::string planText(const Plan& plan) {
   const BoundGraph& graph = *plan.graph;
   std::string text = fmt::format("graph {}", graph.name);
@@ -181,7 +187,7 @@ std::string planText(const Plan& plan) {
     for (const uint32_t p : plan.levels[l].passes) {
       const BoundPass& pass = graph.passes[p];
       text += fmt::format("    pass    {} ({}){}", pass.name, pass.declaration->type,
-                          pass.declaration->kind == PassKind::Host ? ", on the host" : "");
+                          isOnHost(graph, p) ? ", on the host" : "");
       if (pass.view != 0) text += fmt::format(", view {}", graph.views[pass.view]);
       text += '\n';
       addSteps(text, plan, p);
@@ -316,7 +322,7 @@ std::string planJson(const Plan& plan) {
       passes.push_back({{"name", graph.passes[p].name},
                         {"type", graph.passes[p].declaration->type},
                         {"view", graph.views[graph.passes[p].view]},
-                        {"host", graph.passes[p].declaration->kind == PassKind::Host}});
+                        {"host", isOnHost(graph, p)}});
       if (!plan.steps.empty() && !plan.steps[p].empty()) passes.back()["steps"] = stepsJson(plan, p);
     }
     json["levels"].push_back({{"barriers", batchJson(level.before, graph)}, {"passes", std::move(passes)}});
