@@ -56,8 +56,7 @@ void addShadersIn(const std::string& part, Shaders& shaders) {
   for (const fs::path& folder : shaderFolders())
     for (fs::recursive_directory_iterator entry(folder / part, ignored), end; entry != end;
          entry.increment(ignored))
-      if (isShader(entry->path()))
-        addShader(entry->path().lexically_relative(folder).string(), shaders);
+      if (isShader(entry->path())) addShader(entry->path().lexically_relative(folder).string(), shaders);
 }
 
 std::string codeOf(std::string_view sources, const Shaders& shaders) {

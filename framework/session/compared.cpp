@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "fovea/error.h"
-#include "framework/session/inputs.h"
 #include "framework/scene/fovea.h"
+#include "framework/session/inputs.h"
 
 namespace fovea::session {
 namespace {

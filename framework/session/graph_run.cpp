@@ -5,8 +5,8 @@
 #include "framework/gpu/format.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/report/report.h"
-#include "framework/scene/motion/motion.h"
 #include "framework/scene/fovea.h"
+#include "framework/scene/motion/motion.h"
 
 namespace fovea::session {
 

@@ -51,10 +51,9 @@ class Candidates : public Pass {
         .define("TWO_EYES", wired("gbuffer2"))
         .define("HAS_RADIANCE", wired("radiance"))
         .define("TRACED", wired("traced"))
-        .constant("imageShare64ths",
-                  [](const RecordContext& ctx) {
-                    return imageShare64ths(ctx.parameters().real("image_share"));
-                  })
+        .constant(
+            "imageShare64ths",
+            [](const RecordContext& ctx) { return imageShare64ths(ctx.parameters().real("image_share")); })
         .constant("secondGaze",
                   [](const RecordContext& ctx) {
                     const scene::View* second = ctx.frame().findView(ctx.parameters().text("second_view"));

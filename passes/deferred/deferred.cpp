@@ -10,10 +10,10 @@
 #include "framework/gpu/resources.h"
 #include "passes/acuity.h"
 #include "passes/bundles.h"
+#include "passes/deferred/records.h"
 #include "passes/materials.h"
 #include "passes/sizes.h"
 #include "shaders/records/vpl.h"
-#include "passes/deferred/records.h"
 
 namespace fovea::passes {
 namespace {

@@ -81,10 +81,9 @@ class EyePaths : public Pass {
     d.counter("ends", "paths that hit a surface");
     d.step("eye-paths/points.comp")
         .define("RAY_PASSAGE", fullMaterials())
-        .constant("imageShare64ths",
-                  [](const RecordContext& ctx) {
-                    return imageShare64ths(ctx.parameters().real("image_share"));
-                  })
+        .constant(
+            "imageShare64ths",
+            [](const RecordContext& ctx) { return imageShare64ths(ctx.parameters().real("image_share")); })
         .constant("renew", renewFrames)
         .constant("strayNow",
                   [](const RecordContext& ctx) {

@@ -7,8 +7,8 @@
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 #include "passes/regions.h"
-#include "shaders/records/eye_paths.h"
 #include "passes/vpl-intensity/records.h"
+#include "shaders/records/eye_paths.h"
 
 namespace fovea::passes {
 namespace {
@@ -104,10 +104,9 @@ void declareDensities(PassDeclaration& d) {
 StepSpec& addPoints(PassDeclaration& d) {
   return d.step("vpl-intensity/points.comp")
       .define("TRACED", 0)
-      .constant("imageShare64ths",
-                [](const RecordContext& ctx) {
-                  return imageShare64ths(ctx.parameters().real("image_share"));
-                })
+      .constant(
+          "imageShare64ths",
+          [](const RecordContext& ctx) { return imageShare64ths(ctx.parameters().real("image_share")); })
       .threads(parameter("points"));
 }
 

@@ -12,9 +12,9 @@
 #include "framework/scene/scene.h"
 #include "framework/scene/subdivision/subdivision.h"
 #include "framework/session/test_device.h"
-#include "tests/references/octahedral.h"
 #include "tests/gpu/command_helpers.h"
 #include "tests/gpu/scene_queries.h"
+#include "tests/references/octahedral.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::scene {

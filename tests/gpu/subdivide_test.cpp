@@ -8,8 +8,8 @@
 #include "framework/gpu/resources.h"
 #include "framework/scene/device/subdivider.h"
 #include "framework/session/test_device.h"
-#include "tests/references/octahedral.h"
 #include "tests/gpu/command_helpers.h"
+#include "tests/references/octahedral.h"
 #include "tests/support/cages.h"
 
 namespace fovea::scene {

@@ -9,9 +9,9 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/motion/movers.h"
 #include "framework/scene/scene.h"
-#include "tests/references/voxel_grid.h"
 #include "places.h"
 #include "tests/passes/ray_reference.h"
+#include "tests/references/voxel_grid.h"
 #include "tests/support/graph_run.h"
 
 namespace fovea::test {

@@ -11,10 +11,10 @@
 
 #include "fovea/test.h"
 #include "framework/base/random.h"
+#include "shaders/records/vpl.h"
 #include "tests/references/fovea.h"
 #include "tests/references/paraboloid.h"
 #include "tests/references/voxel_trace.h"
-#include "shaders/records/vpl.h"
 #include "tests/support/voxels.h"
 
 namespace fovea::test {

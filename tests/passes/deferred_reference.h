@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "fovea/test.h"
-#include "tests/references/paraboloid.h"
 #include "shaders/records/vpl.h"
+#include "tests/references/paraboloid.h"
 
 namespace fovea::test {
 

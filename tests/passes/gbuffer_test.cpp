@@ -10,8 +10,8 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
 #include "framework/scene/scene.h"
-#include "tests/references/octahedral.h"
 #include "tests/passes/ray_reference.h"
+#include "tests/references/octahedral.h"
 #include "tests/support/raster_grid.h"
 #include "tests/support/sky.h"
 

@@ -12,10 +12,10 @@
 #include "framework/base/random.h"
 #include "framework/scene/load.h"
 #include "framework/scene/scene.h"
-#include "tests/references/paraboloid.h"
-#include "tests/references/voxel_trace.h"
 #include "shaders/records/hemisphere_rays.h"
 #include "shaders/records/vpl.h"
+#include "tests/references/paraboloid.h"
+#include "tests/references/voxel_trace.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 

@@ -8,11 +8,11 @@
 
 #include "fovea/test.h"
 #include "framework/scene/rays/ray_scene.h"
-#include "tests/references/paraboloid.h"
-#include "tests/references/voxel_grid.h"
 #include "shaders/records/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/shadow_view.h"
+#include "tests/references/paraboloid.h"
+#include "tests/references/voxel_grid.h"
 
 namespace fovea::test {
 namespace {

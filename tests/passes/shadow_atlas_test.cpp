@@ -16,10 +16,10 @@
 #include "framework/scene/load.h"
 #include "framework/scene/scene.h"
 #include "framework/session/test_device.h"
-#include "tests/references/paraboloid.h"
 #include "shaders/records/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/vpl_scene.h"
+#include "tests/references/paraboloid.h"
 
 namespace fovea::test {
 namespace {

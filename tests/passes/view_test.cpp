@@ -9,9 +9,9 @@
 #include "fovea/test.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
+#include "shaders/records/vpl.h"
 #include "tests/references/paraboloid.h"
 #include "tests/references/voxel_trace.h"
-#include "shaders/records/vpl.h"
 #include "tests/support/voxels.h"
 
 namespace fovea::test {

@@ -12,11 +12,11 @@
 #include "fovea/test.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
+#include "shaders/records/vpl.h"
+#include "tests/passes/ray_reference.h"
 #include "tests/references/fovea.h"
 #include "tests/references/paraboloid.h"
 #include "tests/references/voxel_trace.h"
-#include "shaders/records/vpl.h"
-#include "tests/passes/ray_reference.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 

@@ -8,8 +8,8 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "tests/references/voxel_grid.h"
 #include "shaders/records/voxel.h"
+#include "tests/references/voxel_grid.h"
 
 namespace fovea::scene {
 

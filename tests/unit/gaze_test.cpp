@@ -7,8 +7,8 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/motion/motion.h"
-#include "tests/references/fovea.h"
 #include "scene_support.h"
+#include "tests/references/fovea.h"
 
 namespace fovea::scene {
 namespace {

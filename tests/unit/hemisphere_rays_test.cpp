@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "tests/references/paraboloid.h"
 #include "shaders/records/hemisphere_rays.h"
+#include "tests/references/paraboloid.h"
 
 namespace fovea::scene {
 namespace {

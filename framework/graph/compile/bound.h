@@ -79,8 +79,8 @@ struct BoundGraph {
   std::vector<BoundOutput> outputs;  // bundles are expanded: "surface.position"
   // Whether steps that trace rays run on the host, as far as their kernels are compiled for it (host_kernel.h).
   bool raysOnHost = false;
-  uint32_t slots = 0;                // number of values of Access::slot
-  uint64_t hash = 0;                 // hash of everything the graph was derived from
+  uint32_t slots = 0;  // number of values of Access::slot
+  uint64_t hash = 0;   // hash of everything the graph was derived from
 };
 
 // Layout and synchronization scope of a single access by itself; the layout in force is Access::layout. Host passes

@@ -274,18 +274,18 @@ std::string passFileSchema() {
                                    {"max", {{"type", "number"}}},
                                    {"unit", text},
                                    {"choices", {{"type", "array"}, {"items", text}}}});
-  Json schema = objectOf({{"$schema", text},
-                          {"doc", described("what the pass does, in one line", text)},
-                          {"view", described("whether it renders from a camera", {{"type", "boolean"}})},
-                          {"rays", described("whether its shaders trace rays, with rays/trace.glsl",
-                                             {{"type", "boolean"}})},
-                          {"inputs", portSchema(input)},
-                          {"updated", portSchema(input)},
-                          {"outputs", portSchema(output)},
-                          {"scratch", portSchema(output)},
-                          {"params", mapOf(parameter)},
-                          {"counters", mapOf(text)},
-                          {"steps", {{"type", "array"}, {"minItems", 1}, {"items", stepSchema()}}}});
+  Json schema = objectOf(
+      {{"$schema", text},
+       {"doc", described("what the pass does, in one line", text)},
+       {"view", described("whether it renders from a camera", {{"type", "boolean"}})},
+       {"rays", described("whether its shaders trace rays, with rays/trace.glsl", {{"type", "boolean"}})},
+       {"inputs", portSchema(input)},
+       {"updated", portSchema(input)},
+       {"outputs", portSchema(output)},
+       {"scratch", portSchema(output)},
+       {"params", mapOf(parameter)},
+       {"counters", mapOf(text)},
+       {"steps", {{"type", "array"}, {"minItems", 1}, {"items", stepSchema()}}}});
   schema["$schema"] = "http://json-schema.org/draft-07/schema#";
   schema["title"] = "fovea pass";
   schema["required"] = {"doc", "steps"};

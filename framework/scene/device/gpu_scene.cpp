@@ -320,8 +320,8 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
   Impl& s = *impl_;
   impl_->store(slot, 0, frameBlock(s.block, frame));
   const std::vector<LightRecord> lights = lightRecords(frame.lights);
-  std::memcpy(static_cast<std::byte*>(s.uniforms.mapped()) + slot * s.slotStride + s.lightOffset, lights.data(),
-              lights.size() * sizeof(LightRecord));
+  std::memcpy(static_cast<std::byte*>(s.uniforms.mapped()) + slot * s.slotStride + s.lightOffset,
+              lights.data(), lights.size() * sizeof(LightRecord));
   for (size_t i = 0; i < frame.views.size(); ++i)
     impl_->store(slot, s.viewOffset + i * s.viewStride, viewBlock(frame.views[i]));
   s.storeObjects(frame, slot);

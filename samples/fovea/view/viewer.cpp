@@ -38,7 +38,8 @@ Viewer::Viewer(Exchange& exchange, const Options& options)
   // Mistakes in the graph are told before a device is looked for and a scene loaded.
   Diagnostics early;
   const graph::Description description = session::loadGraph(settings_.graph, early);
-  graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, settings_.size, settings_.graph.rays), early);
+  graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, settings_.size, settings_.graph.rays),
+              early);
   if (!options.tev.empty()) tev_ = std::make_unique<TevStream>(exchange, options.tev);
   device_ = gpu::openDevice({.device = options.device,
                              .without = options.without,
