@@ -146,22 +146,24 @@ void checkPoints(const Geometry& g, const std::vector<Query>& queries, const std
     EXPECT_LE(glm::distance(got.position, a), 2 * std::sqrt(glm::length(cross)) + 2);
     EXPECT_EQ(got.radiance.g, 1);
   }
+  const bool any = !chosen.empty();
   double sum = 0;
   for (const auto& [triangle, density] : densities) {
     const double area = 0.5 * double(glm::length(crossOf(g, triangle))), want = density * area * kDraws;
     EXPECT_NEAR(chosen[triangle], want, 5 * std::sqrt(want) + 1e-6) << triangle;
     sum += density * area;
   }
-  EXPECT_NEAR(sum, chosen.empty() ? 0 : 1, 2e-3);
+  EXPECT_NEAR(sum, any ? 1 : 0, 2e-3);
 }
 
-// The mean of the radiance over the density is the light of the map, as the sum over its texels says.
+// The mean of the radiance over the density is the light of the map, as the sum over its texels says. Devices may
+// interpolate with weights of 8 bits.
 void checkMap(const EnvironmentMap& map, const std::vector<Answer>& answers) {
   glm::dvec3 got(0), want(0);
   for (const Answer& a : answers) {
     ASSERT_NEAR(glm::length(a.direction), 1, 1e-4f);
     const glm::vec3 radiance = map.radiance(a.direction);
-    EXPECT_LT(glm::distance(a.mapRadiance, radiance), 0.02f * glm::length(radiance) + 1e-3f);
+    EXPECT_LT(glm::distance(a.mapRadiance, radiance), 0.02f * glm::length(radiance) + 0.06f);
     got += glm::dvec3(a.mapRadiance) / double(a.mapDensity) / double(answers.size());
   }
   const double step = glm::pi<double>() / map.height();

@@ -43,7 +43,7 @@ TEST(Transfer, MappedBuffers) {
   const std::vector<uint32_t> data = counting(16, 3);
   gpu::upload(device, upload, std::as_bytes(std::span(data)));
   EXPECT_EQ(as<uint32_t>(gpu::download(device, upload)), data);
-  EXPECT_EQ(gpu::Buffer(device, {"device", 64, 0}).mapped(), nullptr);
+  EXPECT_EQ(gpu::Buffer(device, {"device", 64, 0}).mapped() != nullptr, device.sharesMemory());
 }
 
 TEST(Transfer, OverrunsAreRefused) {

@@ -59,6 +59,7 @@ inline std::vector<glm::vec4> evaluate(scene::GpuScene& scene, const scene::Fram
 #extension GL_GOOGLE_include_directive : require
 )" + head + R"(
 #include "materials/passage.glsl"
+#include "scene/objects.glsl"
 #include "scene/scene.glsl"
 layout(local_size_x = 64) in;
 layout(std430) readonly buffer Queries { vec4 queries[]; };
