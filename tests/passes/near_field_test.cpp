@@ -149,7 +149,7 @@ TEST(NearFieldLight, AllLightOfALamp) {
           want += 0.25 * fromRectangle(half, height, -3 * d.x / d.z, -3 * d.y / d.z);
         }
         EXPECT_NEAR(got[i].r, want, 0.1 * want + 5e-4) << i << ", lamp " << half.x << ", " << others;
-        EXPECT_NEAR(got[i].b, 3 * got[i].r, 1e-3f * got[i].b);
+        EXPECT_NEAR(got[i].b, 3 * got[i].r, 1e-3f * got[i].b + 3e-7f);  // the least halves are coarser
         all += got[i].r;
         wantAll += want;
       }

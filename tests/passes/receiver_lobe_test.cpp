@@ -74,10 +74,10 @@ std::vector<Response> responsesOf(const scene::Scene& s, int rays, const Lobe& l
 std::vector<Response> responsesTo(glm::vec3 direction, const Lobe& lobe) {
   scene::Scene s = floorInView();
   const uint32_t panel = addMaterial(s, glm::vec3(0));
-  s.materials[panel].emission = glm::vec3(1e4f);
+  s.materials[panel].emission = glm::vec3(4e6f);
   s.materials[panel].doubleSided = true;
   const glm::mat3 axes = scene::orthonormalFrame(direction);
-  addQuad(s, panel, 400.0f * direction - axes[0] - axes[1], 2.0f * axes[0], 2.0f * axes[1]);
+  addQuad(s, panel, 400.0f * direction, 0.1f * axes[0], 0.1f * axes[1]);
   return responsesOf(s, 1, lobe);
 }
 glm::vec3 toPanel(glm::vec3 direction, const Response& r) {
