@@ -40,7 +40,7 @@ struct NearFieldMeans {
   double area = 0;
 
   NearFieldMeans(NearFieldTest& test, uint32_t frames) {
-    test.param("first_samples", int(kRays)).param("saccade_samples", int(kRays));
+    test.param("first_samples", 1).param("saccade_samples", int(kRays));
     test.beforeFrame([](PassTest&, scene::Frame& frame) { frame.saccade = 1; });
     test.run();
     for (uint32_t i = 0; i < frames; ++i) {
