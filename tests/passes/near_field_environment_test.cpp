@@ -48,7 +48,7 @@ TEST(NearFieldEnvironmentLight, BringsAllOfItsLight) {
   for (const double area : {0.05, 5.0}) {
     NearFieldTest test(floorUnder(map, 0), glm::uvec2(16));
     setArea(test, area);
-    test.param("first_samples", 1024);
+    test.param("first_samples", 256);
     const glm::dvec3 mean = meanOf(test.samples());
     EXPECT_NEAR(test.area(), area, 0.01 * area);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], want[c], 0.01 * want[c]) << area;

@@ -56,7 +56,7 @@ TEST(NearFieldFull, MetalSendsLightInItsLobe) {
   NearFieldTest test(room.scene, glm::uvec2(8));
   test.view("materials", "full").param("bounces", 1);
   test.param("vpls", 1).param("share", 1e6);  // nothing is left to discs
-  const std::vector<glm::vec4> got = NearFieldMeans(test, 8, 1024).samples;
+  const std::vector<glm::vec4> got = NearFieldMeans(test, 256).samples;
   int lit = 0;
   for (uint32_t i = 0; i < 16; ++i) {
     glm::dvec3 want(0);
@@ -93,7 +93,7 @@ TEST(NearFieldFull, LampsShineUnderLobes) {
         .param("share", 0.01);  // nothing is left but the lamp
     test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, normal);
     test.image("gbuffer.specular", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, specular);
-    const NearFieldMeans means(test, 4, 1024);
+    const NearFieldMeans means(test, 128);
     const std::vector<glm::vec4>&diffuse = means.samples, &gloss = means.gloss;
     int lit = 0;
     double highest = 0;

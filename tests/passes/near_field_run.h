@@ -33,19 +33,21 @@ struct NearFieldTest : PassTest {
   float area() const { return values<glm::vec4>("spread")[0].x; }
 };
 
-// Means of outputs over so many frames, each after a cut of the camera and with rays of its own.
+// Means over so many frames of 16 rays each, as after a jump of the gaze.
 struct NearFieldMeans {
+  static constexpr uint32_t kRays = 16;
   std::vector<glm::vec4> samples, gloss;
+  double area = 0;
 
-  NearFieldMeans(NearFieldTest& test, uint32_t frames, uint32_t raysEach) {
-    test.param("first_samples", int(raysEach)).beforeFrame([raysEach](PassTest&, scene::Frame& frame) {
-      frame.cameraCut = true;
-      frame.index *= raysEach;
-    });
+  NearFieldMeans(NearFieldTest& test, uint32_t frames) {
+    test.param("first_samples", 1).param("saccade_samples", int(kRays));
+    test.beforeFrame([](PassTest&, scene::Frame& frame) { frame.saccade = 1; });
+    test.run();
     for (uint32_t i = 0; i < frames; ++i) {
       test.run();
       add(samples, test.texels("samples"), float(frames));
       add(gloss, test.texels("gloss"), float(frames));
+      area += double(test.area()) / frames;
     }
   }
 

@@ -62,8 +62,7 @@ Room look(scene::Scene s, glm::ivec2 size) { return lookInto(std::move(s), 8, si
 // All of what the walls emit, and of what they reflect the part that discs leave out.
 TEST(NearFieldLight, ThePartThatDiscsLeaveOut) {
   const Room room = look(shiningRoom(true), glm::ivec2(8));
-  constexpr uint32_t kFrames = 4, kRays = 1024,
-                     kSamples = kFrames * kRays;  // a quarter for each pixel of a block
+  constexpr uint32_t kFrames = 128, kSamples = kFrames * NearFieldMeans::kRays;
   const double series[] = {1.5, 1.75, 1.875};
   const struct {
     double share;  // area of a disc, in squares of the mean length
@@ -72,8 +71,9 @@ TEST(NearFieldLight, ThePartThatDiscsLeaveOut) {
   for (const auto& [share, bounces] : cases) {
     NearFieldTest test(room.scene, glm::uvec2(8));
     test.param("vpls", 1).param("share", share).param("bounces", bounces);
-    const std::vector<glm::vec4> got = NearFieldMeans(test, kFrames, kRays).samples;
-    const double area = test.area();
+    const NearFieldMeans means(test, kFrames);
+    const std::vector<glm::vec4>& got = means.samples;
+    const double area = means.area;
     double all = 0, wantAll = 0;
     // A ray goes on with a probability of at most four times its part.
     const auto bound = [&](double part, int texels) {
@@ -94,7 +94,6 @@ TEST(NearFieldLight, ThePartThatDiscsLeaveOut) {
         want += (1 + (series[bounces - 1] - 1) * reflected) / 4;
         least = std::min(least, reflected);
       }
-      EXPECT_EQ(int(got[i].a) & 15, 2);
       for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(got[i][c] / ((1 << c) * want), 1, bound(least, 1))
             << i << ", share " << share << ", bounces " << bounces;
@@ -141,7 +140,7 @@ TEST(NearFieldLight, AllLightOfALamp) {
       const scene::View view = scene::makeView(s.cameras[0], glm::uvec2(16), scene::flatten(s));
       NearFieldTest test(s, glm::uvec2(16));
       test.param("emitter_points", 16);
-      const std::vector<glm::vec4> got = NearFieldMeans(test, 1, 1024).samples;
+      const std::vector<glm::vec4> got = NearFieldMeans(test, 64).samples;
       double all = 0, wantAll = 0;
       for (uint32_t i = 0; i < 64; ++i) {
         double want = 0;
@@ -150,7 +149,7 @@ TEST(NearFieldLight, AllLightOfALamp) {
           want += 0.25 * fromRectangle(half, height, -3 * d.x / d.z, -3 * d.y / d.z);
         }
         EXPECT_NEAR(got[i].r, want, 0.1 * want + 5e-4) << i << ", lamp " << half.x << ", " << others;
-        EXPECT_NEAR(got[i].b, 3 * got[i].r, 1e-3f * got[i].b);
+        EXPECT_NEAR(got[i].b, 3 * got[i].r, 1e-3f * got[i].b + 3e-7f);  // the least halves are coarser
         all += got[i].r;
         wantAll += want;
       }
