@@ -62,7 +62,7 @@ Room look(scene::Scene s, glm::ivec2 size) { return lookInto(std::move(s), 8, si
 // All of what the walls emit, and of what they reflect the part that discs leave out.
 TEST(NearFieldLight, ThePartThatDiscsLeaveOut) {
   const Room room = look(shiningRoom(true), glm::ivec2(8));
-  constexpr uint32_t kFrames = 128, kSamples = kFrames * NearFieldMeans::kRays;
+  constexpr uint32_t kFrames = 32, kSamples = kFrames * NearFieldMeans::kRays;
   const double series[] = {1.5, 1.75, 1.875};
   const struct {
     double share;  // area of a disc, in squares of the mean length
