@@ -1,6 +1,8 @@
-// What smooth surfaces reflect, with rays on the device.
+// What smooth surfaces reflect.
+#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 #include "passes/sizes.h"
 #include "shaders/records/gather_cache.h"
 
@@ -32,6 +34,9 @@ void declarePorts(PassDeclaration& d) {
 }
 
 void checkPorts(const PassContext& ctx, glm::uvec2 half) {
+  if (!fullMaterials(ctx.parameters()))
+    throw Error(ExitCode::BadInput, "materials are `diffuse`, and diffuse surfaces have no narrow lobe",
+                "leave the pass out, or make the materials of the view `full`");
   checkSize(ctx, "mirrors", half, "half its view", "wire mirrors of the view that the pass looks through");
 }
 

@@ -203,10 +203,24 @@ TEST_P(Reflections, TheSkyStaysOutOfGaps) {
 TEST_P(Reflections, MirrorsOfAnotherViewAreRefused) {
   const Room room = closedRoom(false, 8, glm::ivec2(kSide));
   RayPassTest test("reflections");
-  test.viewSize(kSide + 2, kSide).scene(room.scene);
+  test.viewSize(kSide + 2, kSide).scene(room.scene).view("materials", "full");
   test.image("mirrors", VK_FORMAT_R32G32B32A32_UINT, kTexels, kTexels, 1,
              std::vector<glm::uvec4>(kTexels * kTexels, glm::uvec4(0)));
   EXPECT_THROW(test.run(), Error);
+}
+
+TEST_P(Reflections, DiffuseSurfacesAreRefused) {
+  const Room room = closedRoom(false, 8, glm::ivec2(kSide));
+  RayPassTest test("reflections");
+  test.viewSize(kSide, kSide).scene(room.scene).view("materials", "diffuse");
+  test.image("mirrors", VK_FORMAT_R32G32B32A32_UINT, kTexels, kTexels, 1,
+             std::vector<glm::uvec4>(kTexels * kTexels, glm::uvec4(0)));
+  try {
+    test.run();
+    FAIL() << "diffuse surfaces have mirrors";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("narrow lobe"), std::string::npos) << e.what();
+  }
 }
 
 // Both take the same random numbers, so that they differ by rounding alone; where rays meet glass, that decides whether
