@@ -60,9 +60,9 @@ double meanLength(const Room& room) {
 Room look(scene::Scene s, glm::ivec2 size) { return lookInto(std::move(s), 8, size); }
 
 // All of what the walls emit, and of what they reflect the part that discs leave out.
-TEST(NearFieldLight, ThePartThatDiscsLeaveOut) {
+TEST(LongNearFieldLight, ThePartThatDiscsLeaveOut) {
   const Room room = look(shiningRoom(true), glm::ivec2(8));
-  constexpr uint32_t kFrames = 32, kSamples = kFrames * NearFieldMeans::kRays;
+  constexpr uint32_t kFrames = 128, kSamples = kFrames * NearFieldMeans::kRays;
   const double series[] = {1.5, 1.75, 1.875};
   const struct {
     double share;  // area of a disc, in squares of the mean length
@@ -119,7 +119,7 @@ double fromRectangle(glm::dvec2 half, double h, double x, double y) {
 
 // Large, small and thin lamps before a wall, close to it and far from it, alone and among others that are hidden in
 // boxes. The wall and the lamps are black, so nothing else adds light, and the eye looks through their backs.
-TEST(NearFieldLight, AllLightOfALamp) {
+TEST(LongNearFieldLight, AllLightOfALamp) {
   const struct {
     glm::vec2 half;
     float height;
@@ -302,7 +302,7 @@ TEST(NearFieldLight, BlocksOutsideTheFoveaShareTheirRays) {
   };
   const glm::dvec2 one = firstSamples(2), many = firstSamples(0.001);
   EXPECT_NEAR(many.x, one.x, 4 * std::sqrt(one.y / 1024));
-  EXPECT_LT(many.y, 0.25 * one.y) << "weights of 1, 3, 1 in either direction leave 0.19 of it";
+  EXPECT_LT(many.y, 0.3 * one.y) << "weights of 1, 3, 1 in either direction leave 0.19 of it";
 }
 
 // The pixels of which a frame has samples: of the picture's blocks of 2 x 2 pixels around the gaze, and of wide ones.

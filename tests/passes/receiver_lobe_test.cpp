@@ -101,7 +101,7 @@ double microfacets(glm::dvec3 n, glm::dvec3 v, glm::dvec3 d, float roughness) {
 }
 
 // Both outputs are half floats, each rounded by up to 5e-4.
-TEST(ReceiverLobe, IsThatOfTheMicrofacets) {
+TEST(LongReceiverLobe, IsThatOfTheMicrofacets) {
   const Lobe lobe{1e-4f, 0.5f};  // so little that none is scattered twice
   for (const glm::vec3 direction : kDirections)
     for (const Response& r : responsesTo(direction, lobe)) {
@@ -111,7 +111,7 @@ TEST(ReceiverLobe, IsThatOfTheMicrofacets) {
 }
 
 // A white metal, whose microfacets scatter everything in the end.
-TEST(ReceiverLobe, HasWhatIsScatteredMoreThanOnce) {
+TEST(LongReceiverLobe, HasWhatIsScatteredMoreThanOnce) {
   const path_trace::BsdfParameters white = bsdfParameters(glm::vec3(1), 1, 1);
   for (const glm::vec3 direction : kDirections)
     for (const Response& r : responsesTo(direction, {1, 1})) {
@@ -136,7 +136,7 @@ double meanResponse(const std::vector<Response>& responses) {
   return sum;
 }
 
-TEST(ReceiverLobe, AddsUpToOneOverAllDirections) {
+TEST(LongReceiverLobe, AddsUpToOneOverAllDirections) {
   for (const float f0 : {0.04f, 0.9f})
     for (const float roughness : {0.4f, 0.7f, 1.0f})
       EXPECT_NEAR(meanResponse(responsesOf(underWhiteSky(), 4, {f0, roughness})), 1, 0.015)
@@ -145,7 +145,7 @@ TEST(ReceiverLobe, AddsUpToOneOverAllDirections) {
 
 // A normal map bends the normal by which light counts. Of an even light what is beneath the surface is lost, and up to
 // 0.04 because of the bound on what the least cosines may count.
-TEST(ReceiverLobe, AddsUpToOneAroundABentNormal) {
+TEST(LongReceiverLobe, AddsUpToOneAroundABentNormal) {
   for (const float tilt : {0.15f, 0.4f})
     for (const float roughness : {0.4f, 0.7f, 1.0f}) {
       const glm::vec3 bent = glm::normalize(glm::vec3(0.3f * std::sin(tilt), std::cos(tilt), std::sin(tilt)));
@@ -165,24 +165,29 @@ TEST(ReceiverLobe, AddsUpToOneAroundABentNormal) {
     }
 }
 
-TEST(ReceiverLobe, IsNoSmootherThanWhatIsTraced) {
+TEST(LongReceiverLobe, IsNoSmootherThanWhatIsTraced) {
   const glm::vec3 direction = kDirections[0];
   const auto responses = [&](float f0, float roughness) {
     std::vector<float> list;
     for (const Response& r : responsesTo(direction, {f0, roughness})) list.push_back(r.response);
     return list;
   };
-  EXPECT_EQ(responses(0.04f, 0.05f), responses(0.04f, 0.3f));
-  EXPECT_EQ(responses(0.9f, 0.05f), responses(0.9f, 0.7f));
+  // Both outputs are half floats.
+  const auto expectSame = [](const std::vector<float>& a, const std::vector<float>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 3e-3f * b[i]) << i;
+  };
+  expectSame(responses(0.04f, 0.05f), responses(0.04f, 0.3f));
+  expectSame(responses(0.9f, 0.05f), responses(0.9f, 0.7f));
   EXPECT_GT(std::ranges::max(responses(0.04f, 0.3f)), std::ranges::max(responses(0.04f, 0.4f)));
 }
 
-TEST(ReceiverLobe, LightFromBehindAddsNothing) {
+TEST(LongReceiverLobe, LightFromBehindAddsNothing) {
   const glm::vec3 away = glm::normalize(glm::vec3(0, 0.5f, 1));
   for (const Response& r : responsesTo(kDirections[0], {0.04f, 0.5f, away})) EXPECT_EQ(r.response, 0);
 }
 
-TEST(ReceiverLobe, WithoutOneLightIsThatOfTheDiffuseLayer) {
+TEST(LongReceiverLobe, WithoutOneLightIsThatOfTheDiffuseLayer) {
   for (const Response& r : responsesTo(kDirections[1], {0, 0.5f})) EXPECT_EQ(r.response, 1);
 }
 

@@ -19,6 +19,8 @@ namespace {
 
 class Reflections : public WhereRaysRun {};
 INSTANTIATE_TEST_SUITE_P(Rays, Reflections, testing::Bool(), nameOfPlace);
+class LongReflections : public Reflections {};
+INSTANTIATE_TEST_SUITE_P(LongRays, LongReflections, testing::Bool(), nameOfPlace);
 
 constexpr int kSide = 16, kTexels = kSide / 2;
 
@@ -54,7 +56,7 @@ std::vector<glm::vec4> samplesOf(const PassTest& test) {
 
 // Walls that emit {1, 2, 4} and reflect half of what they get: with light of up to n reflections a wall sends
 // (2 - 1 / 2^n) times its own emission. Under any lobe, the mean of it is the same.
-TEST_P(Reflections, TheLightOfAClosedRoomUnderAnyLobe) {
+TEST_P(LongReflections, TheLightOfAClosedRoomUnderAnyLobe) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
   s.materials[m].emission = {1, 2, 4};
@@ -138,7 +140,7 @@ TEST_P(Reflections, CodesOfTheSamples) {
 
 // Single rays under a wide lobe are poor estimates, so neighbours whose lobes overlap share theirs; texels that have no
 // neighbours cannot.
-TEST_P(Reflections, NeighboursShareTheirLight) {
+TEST_P(LongReflections, NeighboursShareTheirLight) {
   constexpr uint32_t kApart = passes::kSharing + 1;
   const Room room = mirroredBox();
   const auto variance = [&](bool alone) {
@@ -226,7 +228,7 @@ TEST_P(Reflections, DiffuseSurfacesAreRefused) {
 // Both take the same random numbers, so that they differ by rounding alone; where rays meet glass, that decides whether
 // one passes, and so mirrors are sharp there, whose rays count for one texel alone. A cut of the camera in the third
 // frame lets both forget.
-TEST(ReflectionsBoth, SeeTheSame) {
+TEST(LongReflectionsBoth, SeeTheSame) {
   for (const auto& [glass, roughness] :
        {std::pair(false, 0.25f), std::pair(false, 0.6f), std::pair(true, 0.02f)}) {
     SCOPED_TRACE(testing::Message() << glass << " " << roughness);

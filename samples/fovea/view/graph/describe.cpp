@@ -250,7 +250,6 @@ Json subGraphsJson(const graph::Plan& plan, const graph::Description& descriptio
   for (const auto& [name, document] : documents.subGraphs)
     list.push_back(
         {{"name", name},
-         {"view", viewJson(*plan.graph, changes)},
          {"parameters", graphParametersJson(subGraphParameters(name, documents, description, *plan.graph),
                                             name + ".", changes)}});
   return list;
@@ -290,6 +289,7 @@ nlohmann::json describeGraph(const graph::Plan& plan, const graph::Description& 
       {"edges", edgesJson(plan)},
       {"outputs", describeOutputs(*plan.graph)},
       {"parameters", graphParametersJson(graphParameters(documents, description, *plan.graph), "", changes)},
+      {"view", viewJson(*plan.graph, changes)},
       {"sub_graphs", subGraphsJson(plan, description, documents, changes)},
       {"levels", plan.levels.size()},
       {"plan", Json::parse(graph::planJson(plan))}};
