@@ -142,7 +142,7 @@ class Change(ViewTest):
         self.wait(lambda: (self.folder / "saved.json").exists(), "the file")
         saved = json.loads((self.folder / "saved.json").read_text())
         self.assertEqual({k: v for k, v in saved.items() if k != "$schema"},
-                         {"extends": "mine.json", "parameters": {"vpl_count": 7},
+                         {"version": 2, "extends": "mine.json", "parameters": {"vpl_count": 7},
                           "passes": {"tonemap": {"params": {"exposure": 2}}}})
         # It runs like what was shown, and is not written over.
         frame, _, words = viewer.pixels("radiance", 0, 0, 64, 64)
