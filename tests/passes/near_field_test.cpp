@@ -140,7 +140,7 @@ TEST(LongNearFieldLight, AllLightOfALamp) {
       const scene::View view = scene::makeView(s.cameras[0], glm::uvec2(16), scene::flatten(s));
       NearFieldTest test(s, glm::uvec2(16));
       test.param("emitter_points", 16);
-      const std::vector<glm::vec4> got = NearFieldMeans(test, 64).samples;
+      const std::vector<glm::vec4> got = NearFieldMeans(test, 256).samples;
       double all = 0, wantAll = 0;
       for (uint32_t i = 0; i < 64; ++i) {
         double want = 0;
