@@ -168,7 +168,7 @@ TEST_P(LongReflections, NeighboursShareTheirLight) {
 
 // A wall under a white sky, before whose left half a black one stands so close that it shows hardly anything else.
 // Where one ray hits that and its neighbour the sky, neither counts for the other.
-TEST_P(Reflections, TheSkyStaysOutOfGaps) {
+TEST_P(LongReflections, TheSkyStaysOutOfGaps) {
   scene::Scene wall;
   addBox(wall, addMaterial(wall, glm::vec3(0)), {-9, -9, -6}, {9, 9, -5});
   wall.environmentMap =
