@@ -17,6 +17,7 @@ using Texels = std::vector<glm::uvec4>;
 template <class Record>
 void append(std::span<const Record> records, Texels& texels) {
   static_assert(sizeof(Record) % sizeof(glm::uvec4) == 0);
+  if (records.empty()) return;
   const size_t first = texels.size();
   texels.resize(first + records.size_bytes() / sizeof(glm::uvec4));
   std::memcpy(texels.data() + first, records.data(), records.size_bytes());
