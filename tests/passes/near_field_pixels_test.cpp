@@ -21,7 +21,7 @@ INSTANTIATE_TEST_SUITE_P(Rays, NearFieldPixels, testing::Bool(), nameOfPlace);
 
 // Walls that emit {1, 2, 4} and reflect half of what they get: with light of up to two reflections they send 1.75 times
 // as much.
-Room shiningRoom() {
+Room emissiveRoom() {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
   s.materials[m].emission = {1, 2, 4};
@@ -54,7 +54,7 @@ void wire(PassTest& test, const scene::Scene& scene, const std::vector<uint8_t>&
 }
 
 TEST_P(NearFieldPixels, OnlyWhereItIsNotKnown) {
-  const Room room = shiningRoom();
+  const Room room = emissiveRoom();
   const uint64_t known = glm::packHalf4x16({1, 2, 3, 1}), unknown = glm::packHalf4x16({5, 6, 7, 0});
   std::vector<uint8_t> mask;
   std::vector<uint64_t> before;
@@ -100,7 +100,7 @@ TEST_P(NearFieldPixels, OnlyWhereItIsNotKnown) {
 TEST_P(NearFieldPixels, NoFireflies) {
   const size_t count = size_t(kSize.x) * kSize.y;
   RayPassTest test("near-field-pixels");
-  wire(test, shiningRoom().scene, std::vector<uint8_t>(count, 255), std::vector<uint64_t>(count));
+  wire(test, emissiveRoom().scene, std::vector<uint8_t>(count, 255), std::vector<uint64_t>(count));
   test.run();
   const auto light = test.values<uint64_t>("near_field");
   for (int block = 0; block < kSize.x / 4 * kSize.y / 4; ++block) {
@@ -130,7 +130,7 @@ TEST_P(NearFieldPixels, BackgroundAndEmptyScenesAreLeftAsTheyAre) {
 
 TEST_P(NearFieldPixels, SizeIsTheViews) {
   RayPassTest test("near-field-pixels");
-  wire(test, shiningRoom().scene, std::vector<uint8_t>(size_t(kSize.x) * kSize.y),
+  wire(test, emissiveRoom().scene, std::vector<uint8_t>(size_t(kSize.x) * kSize.y),
        std::vector<uint64_t>(size_t(kSize.x) * kSize.y));
   test.viewSize(8, 8);
   try {

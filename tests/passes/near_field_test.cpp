@@ -23,7 +23,7 @@ INSTANTIATE_TEST_SUITE_P(Rays, NearField, testing::Bool(), nameOfPlace);
 
 // Walls that emit {1, 2, 4} and reflect half of what they get: with light of up to n reflections a wall sends
 // (2 - 1 / 2^n) times its own emission.
-scene::Scene shiningRoom(bool block) {
+scene::Scene emissiveRoom(bool block) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
   s.materials[m].emission = {1, 2, 4};
@@ -61,7 +61,7 @@ Room look(scene::Scene s, glm::ivec2 size) { return lookInto(std::move(s), 8, si
 
 // All of what the walls emit, and of what they reflect the part that discs leave out.
 TEST(LongNearFieldLight, ThePartThatDiscsLeaveOut) {
-  const Room room = look(shiningRoom(true), glm::ivec2(8));
+  const Room room = look(emissiveRoom(true), glm::ivec2(8));
   constexpr uint32_t kFrames = 128, kSamples = kFrames * NearFieldMeans::kRays;
   const double series[] = {1.5, 1.75, 1.875};
   const struct {
@@ -225,7 +225,7 @@ TEST_P(NearField, NarrowBlocksCloseToALamp) {
 
 // Few rays go far, and yet on average they go as far as if all of them did.
 TEST(NearFieldLight, DiscsAreAsLargeAsDistancesSay) {
-  const Room room = look(shiningRoom(true), glm::ivec2(64));
+  const Room room = look(emissiveRoom(true), glm::ivec2(64));
   const double length = meanLength(room);
   for (const int vpls : {100, 1000}) {
     NearFieldTest test(room.scene, glm::uvec2(64));
@@ -292,7 +292,7 @@ glm::dvec2 meanAndVariance(const std::vector<float>& samples) {
 // Outside the fovea single rays, many of which bring nothing, become means over what lies on the same wall.
 TEST(NearFieldLight, BlocksOutsideTheFoveaShareTheirRays) {
   const auto firstSamples = [](double foveaRadius) {
-    NearFieldTest test(shiningRoom(false), glm::uvec2(256));  // the far wall fills the picture
+    NearFieldTest test(emissiveRoom(false), glm::uvec2(256));  // the far wall fills the picture
     test.view("fovea_radius", foveaRadius).param("spacing", 8).param("first_samples", 1).param("share", 25.0);
     std::vector<float> red;
     const std::vector<glm::vec4> image = test.samples();
@@ -323,7 +323,7 @@ void lookAtFirstTile(NearFieldTest& test, int spacing) {
 
 TEST_P(NearField, EveryPixelOfABlockHasItsTurn) {
   for (const uint32_t spacing : {4u, 8u}) {
-    NearFieldTest test(shiningRoom(false), glm::uvec2(4 * spacing), GetParam());
+    NearFieldTest test(emissiveRoom(false), glm::uvec2(4 * spacing), GetParam());
     lookAtFirstTile(test, int(spacing));
     std::vector<std::set<std::pair<uint32_t, uint32_t>>> seen(4 * spacing * spacing);
     for (uint32_t turn = 0; turn < spacing * spacing; ++turn) {
@@ -347,7 +347,7 @@ TEST_P(NearField, EveryPixelOfABlockHasItsTurn) {
 
 // Every column and every row of two neighbouring blocks.
 TEST_P(NearField, NarrowStripsAreMetInEveryFrame) {
-  NearFieldTest test(shiningRoom(false), glm::uvec2(8), GetParam());
+  NearFieldTest test(emissiveRoom(false), glm::uvec2(8), GetParam());
   test.param("first_samples", 1);
   for (uint32_t turn = 0; turn < 4; ++turn) {
     const auto pixels = sampled(test);
@@ -364,7 +364,7 @@ TEST_P(NearField, NarrowStripsAreMetInEveryFrame) {
 
 TEST_P(NearField, TheSameEveryTime) {
   const auto once = [] {
-    NearFieldTest test(shiningRoom(true), glm::uvec2(32), GetParam());
+    NearFieldTest test(emissiveRoom(true), glm::uvec2(32), GetParam());
     test.view("fovea_radius", 0.25).run(4);
     return std::tuple(test.bytes("samples"), test.area(), test.counter("rays"));
   };
@@ -374,7 +374,7 @@ TEST_P(NearField, TheSameEveryTime) {
 // A new fovea takes more rays for each sample, all of them from the pixel whose turn it is; outside nothing changes.
 TEST_P(NearField, MoreRaysForANewFovea) {
   const auto second = [](float saccade) {
-    NearFieldTest test(shiningRoom(true), glm::uvec2(32), GetParam());
+    NearFieldTest test(emissiveRoom(true), glm::uvec2(32), GetParam());
     test.view("fovea_radius", 0.25).param("spacing", 8).param("saccade_samples", 4);
     test.beforeFrame([&](PassTest&, scene::Frame& f) { f.saccade = f.index == 1 ? saccade : 0.0f; });
     return test.samples(2);
@@ -399,7 +399,7 @@ TEST(NearFieldLight, MoreRaysForChangedLight) {
     double shaded, gathered;
   };
   const auto after = [&](float ageing) {
-    NearFieldTest test(shiningRoom(true), glm::uvec2(16));
+    NearFieldTest test(emissiveRoom(true), glm::uvec2(16));
     test.param("saccade_samples", 5).param("vpls", 10).param("first_samples", 1024);  // which fill the cache
     test.buffer("change", std::vector<glm::vec4>{glm::vec4(0)}, "LightChange");
     test.beforeFrame([ageing](PassTest& t, scene::Frame& f) {
@@ -417,7 +417,7 @@ TEST(NearFieldLight, MoreRaysForChangedLight) {
 }
 
 TEST_P(NearField, SpacingIsAPowerOfTwo) {
-  NearFieldTest test(shiningRoom(false), glm::uvec2(16), GetParam());
+  NearFieldTest test(emissiveRoom(false), glm::uvec2(16), GetParam());
   test.param("spacing", 6);
   try {
     test.run();
@@ -436,7 +436,7 @@ TEST_P(NearField, RefusesAnotherGBuffer) {
   } cases[] = {{8, 8, "`gbuffer.normal` has 8x8 pixels, its view has 16x16"},
                {16, 1, "those of the G-buffer are not"}};
   for (const auto& [normal, specular, says] : cases) {
-    NearFieldTest test(shiningRoom(false), glm::uvec2(16), GetParam());
+    NearFieldTest test(emissiveRoom(false), glm::uvec2(16), GetParam());
     test.view("materials", "full");
     test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, normal, normal, 1,
                std::vector<uint64_t>(normal * normal));
