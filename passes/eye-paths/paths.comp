@@ -49,11 +49,11 @@ EyePathEnd endOf(EyePathStart start, uint point, uint turn_, uint paths) {
   TracedSurface v = arrive(from.origin, direction, kFarAway);
   if (!v.there || (isAimed && v.triangle != aim.triangle)) return kNoEnd;
   Reflection reflection = reflectionOf(v, -direction, reflectance(v), kBounceRoughness);
-  vec3 shining = vec3(0.0), radiance = directLight(v, reflection);
+  vec3 emission = vec3(0.0), radiance = directLight(v, reflection);
 #if EMISSION
-  shining = emitted(v);
+  emission = emitted(v);
 #endif
-  float direct = meanChannel(radiance), kind = meanChannel(shining) > direct ? 3.0 : radiance == vec3(0.0) ? 1.0 : 2.0;
+  float direct = meanChannel(radiance), kind = meanChannel(emission) > direct ? 3.0 : radiance == vec3(0.0) ? 1.0 : 2.0;
   vec3 indirect = passedOn(v, reflection, constants.bounces - 1u, constants.gathered,
                            randomStream(frame.seed, turn_, kPathGatherStream, point));
   if (hasEmitters() && kind < 3.0 && meanChannel(indirect) > direct) kind = 4.0;
@@ -62,7 +62,7 @@ EyePathEnd endOf(EyePathStart start, uint point, uint turn_, uint paths) {
     float cosine = cosineDensity(from, direction);
     weight = float(paths) * cosine / (float(others) * cosine + float(aimed) * aimedDensity(from, v));
   }
-  return EyePathEnd(v.position, kind, v.face, weight, radiance + shining + indirect, 0.0);
+  return EyePathEnd(v.position, kind, v.face, weight, radiance + emission + indirect, 0.0);
 }
 
 void main() {

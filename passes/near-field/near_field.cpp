@@ -51,7 +51,7 @@ void declarePorts(PassDeclaration& d) {
               "fovea is that of wide blocks, and up to so many when light changes");
   d.parameter(
       "emitter_points", integer(4, 1, 64),
-      "points on surfaces that shine and in an environment map, of which the ray aimed at them chooses "
+      "points on emissive surfaces and in an environment map, of which the ray aimed at them chooses "
       "one; for a map there are as many cosine-weighted ones beside them");
   d.parameter("light", choice("all", {"none", "map", "all"}),
               "`map` brings the light of the scene's environment map alone, `none` nothing");

@@ -224,7 +224,7 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
   const PathVertex& v = path.vertex;
   const uint32_t k = 8 * edges;
   if (edges > 1) path.light += path.throughput * kInversePi * oneLight(v, random, k + 2, rays);
-  if (shines()) {
+  if (emits()) {
     const std::array<float, 2> u = random.pair(k + 4);
     path.light += path.throughput * emitterLight(v, random.number(k + 6), u[0], u[1], rays);
   }
@@ -334,7 +334,7 @@ void PathIntegrator::indirect(const PathVertex& first, std::span<const PathSampl
     wave.alive[i] = uint8_t(i);
   }
   // Light of the lights comes along at least three edges, all other light along at least two.
-  const uint32_t edgesAtLeast = shines() ? 2 : 3;
+  const uint32_t edgesAtLeast = emits() ? 2 : 3;
   for (uint32_t edges = 1; depth_ >= edgesAtLeast && edges < depth_ && wave.count > 0; ++edges) {
     if (lastByLight(edges)) {
       reflectLast(wave, edges, rays);

@@ -91,9 +91,9 @@ class PathIntegrator {
   void bounce(Wave& wave, uint32_t edges, uint64_t& rays) const;
   void reflectLast(Wave& wave, uint32_t edges, uint64_t& rays) const;
   // Whether there is light that is not one of the scene's lights.
-  bool shines() const { return !emitters_.empty() || environment_; }
+  bool emits() const { return !emitters_.empty() || environment_; }
   // Without it the last edge is a shadow ray.
-  bool lastByLight(uint32_t edges) const { return !shines() && edges + 1 == depth_; }
+  bool lastByLight(uint32_t edges) const { return !emits() && edges + 1 == depth_; }
   // Irradiance of one light on a vertex, ignoring occlusion.
   glm::vec3 unshadowed(const scene::Light& light, const PathVertex& v, scene::Ray& shadowRay) const;
   glm::vec3 allLights(const PathVertex& v, uint64_t& rays) const;  // irradiance

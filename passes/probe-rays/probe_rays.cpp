@@ -40,7 +40,7 @@ void declarePorts(PassDeclaration& d) {
   d.parameter(
       "feedback", flag(true),
       "whether surfaces that rays meet reflect the light that `probes` knows; if not, they reflect only "
-      "that of lights and of surfaces that shine, and the probes hold one bounce");
+      "that of lights and of emissive surfaces, and the probes hold one bounce");
   d.counter("rays", kRaysDoc);
   d.counter("probes", "probes in the grid");
   d.counter("inside", "probes inside geometry, which light nothing");

@@ -161,8 +161,8 @@ float emittersPower(uint node) {
   return uintBitsToFloat(texelOf(rayEmitters, int(emitterHeader().y + 3u * node) + 2).x);
 }
 
-// An emitter in proportion to its power alone, of which a leaf knows both sides; there must be one that shines.
-// choice: as above.
+// A random emitter, in proportion to its power alone, for which triangles that emit on both sides count twice. At least
+// one must have power. choice: as above. probability: that of the choice.
 Emitter emitterByPower(float choice, OUT(float) probability) {
   uvec2 range = uvec2(0u, emitterCount());
   probability = 1.0;

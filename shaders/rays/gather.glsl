@@ -114,8 +114,8 @@ Arrival arrival(TracedSurface at, vec3 direction, float density) {
   }
   a.rho = reflectance(a.next);
   a.light = directTowards(a.next, -direction, a.rho, kGatheredRoughness);
-  vec3 shining = emitted(a.next);
-  if (shining != vec3(0.0)) a.light += shining * (density / (aimedDensity(at, a.next) + density));
+  vec3 emission = emitted(a.next);
+  if (emission != vec3(0.0)) a.light += emission * (density / (aimedDensity(at, a.next) + density));
   return a;
 }
 

@@ -99,12 +99,12 @@ NearLight nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint
   noteLength(distance_, probability);
   if (!(radius2 > 0.0)) return sum;
   ++shadedCount;
-  vec3 rho = reflectance(hit), shining = emitted(hit);
+  vec3 rho = reflectance(hit), emission = emitted(hit);
   vec3 radiance = directTowards(hit, -direction, rho, kBounceRoughness);
   radiance += rho * furtherLight(hit, bounces - 1u, randomStream(stream, turn_, kNearGatherStream, order));
-  if (shining != vec3(0.0)) {
+  if (emission != vec3(0.0)) {
     float cosine = cosineDensity(v, direction);
-    add(sum, v, shining * (cosine / (cosine * probability + float(points) * aimedDensity(v, hit))), direction);
+    add(sum, v, emission * (cosine / (cosine * probability + float(points) * aimedDensity(v, hit))), direction);
   }
   add(sum, v, radiance * (partAt(distance_) / probability), direction);
 #endif

@@ -50,7 +50,7 @@ TEST(EyePathsBoth, FindTheSame) {
   for (const std::string materials : {"diffuse", "full", "glass"})
     for (const bool emission : {false, true})
       for (const uint32_t frames : {1u, 4u}) {
-        const std::string what = materials + (emission ? " shining " : " ") + std::to_string(frames);
+        const std::string what = materials + (emission ? " emissive " : " ") + std::to_string(frames);
         const Result host = run(true, materials, emission, frames),
                      device = run(false, materials, emission, frames);
         int starts = 0, ends = 0, lit = 0;

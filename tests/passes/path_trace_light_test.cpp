@@ -87,7 +87,7 @@ struct Lit {
   }
 };
 
-// Panels in different places, of different size, power and orientation, among surfaces that do not shine.
+// Panels in different places, of different size, power and orientation, among surfaces that are not emissive.
 Scene panels(uint32_t count) {
   Scene s;
   const uint32_t grey = addMaterial(s, glm::vec3(0.5f));

@@ -311,7 +311,7 @@ TEST(Weights, TracedPathsBringTheirOwnLight) {
   const auto points = screenPoints(room, elsewhere);
   auto ends = colouredEnds(room, points, 4096);
   for (size_t i = 0; i < ends.size(); i += 5)
-    ends[i].kind = i % 2 == 0 ? 3 : 4;  // shines or glows, although no VPL does
+    ends[i].kind = i % 2 == 0 ? 3 : 4;  // emissive, or lit by other surfaces, although no VPL is
   const double pi = glm::pi<double>();
   for (const float nearArea : {0.0f, 0.1f}) {
     glm::dvec3 want(0), got(0);  // without the light of pass near-field
@@ -429,7 +429,7 @@ TEST(Weights, TracedPathsGoToVplsThatTheirStartsSee) {
   EXPECT_GT(other, 0.02 * all);  // it makes a difference
 }
 
-// Paths that hit nothing count among those tried; if none hits anything, nothing shines.
+// Paths that hit nothing count among those tried; if none hits anything, there is no light.
 TEST(Weights, TracedPathsThatEndNowhere) {
   const Room room = closedRoom(false, 16, glm::ivec2(32));
   const WeightSettings settings;

@@ -289,9 +289,9 @@ TEST(FirstView, GlassDoesNotHideTheSun) {
 // A garden at night, with a lantern that lights next to nothing of it.
 TEST(FirstView, ASunHelpsWhereALanternDoesNot) {
   scene::Scene s = box({10, 0.5f, 10});
-  const uint32_t shining = addMaterial(s, glm::vec3(0));
-  s.materials[shining].emission = glm::vec3(20);
-  addQuad(s, shining, {3, 1, 0}, {0.1f, 0, 0}, {0, 0.1f, 0});
+  const uint32_t emissive = addMaterial(s, glm::vec3(0));
+  s.materials[emissive].emission = glm::vec3(20);
+  addQuad(s, emissive, {3, 1, 0}, {0.1f, 0, 0}, {0, 0.1f, 0});
   EXPECT_EQ(scene::addFirstView(s).light, "a sun and a sky");
   expectGoodPicture(s);
 }
@@ -299,10 +299,10 @@ TEST(FirstView, ASunHelpsWhereALanternDoesNot) {
 // A dim wall with a lamp on it, which fills 3% of the picture and is fifty times as bright.
 TEST(FirstView, DarkRoomsAreExposedForWhatIsDark) {
   scene::Scene s;
-  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), shining = addMaterial(s, glm::vec3(0));
-  s.materials[shining].emission = glm::vec3(25 * glm::one_over_pi<float>());
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), emissive = addMaterial(s, glm::vec3(0));
+  s.materials[emissive].emission = glm::vec3(25 * glm::one_over_pi<float>());
   addQuad(s, grey, {-3, -3, 0}, {6, 0, 0}, {0, 6, 0});
-  addQuad(s, shining, {-0.17f, -0.17f, 0.001f}, {0.346f, 0, 0}, {0, 0.346f, 0});
+  addQuad(s, emissive, {-0.17f, -0.17f, 0.001f}, {0.346f, 0, 0}, {0, 0.346f, 0});
   scene::Camera camera;
   camera.position = {0, 0, 1};
   camera.verticalFov = glm::half_pi<float>();
