@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "framework/base/threads.h"
+#include "framework/host/copy_state.h"
 #include "framework/host/images.h"
 #include "framework/scene/host/host_scene.h"
 // All records that kernels know; those of namespaces cannot be included inside of a struct.
@@ -135,6 +136,7 @@ void count(const K& kernel, std::vector<uint64_t>& sums) {
 // Calls main() for each invocation, as a device does: with what is global to the shader as it was at first.
 template <class K>
 void runKernel(const graph::HostDispatch& dispatch, Passing passing) {
+  static_assert(std::is_trivially_copyable_v<K>);
   K first(dispatch, passing);
   if constexpr (requires { first.constants; })
     std::memcpy(&first.constants, dispatch.constants.data(),
@@ -147,12 +149,13 @@ void runKernel(const graph::HostDispatch& dispatch, Passing passing) {
   std::mutex mutex;
   onThreads(std::min(threadCount(0), all), [&] {
     std::vector<uint64_t> sums;
+    K kernel(first);
     for (uint32_t group = next++; group < all; group = next++) {
       const uvec3 at(group % groups.x, group / groups.x % groups.y, group / groups.x / groups.y);
       for (uint z = 0; z < size.z; ++z)
         for (uint y = 0; y < size.y; ++y)
           for (uint x = 0; x < size.x; ++x) {
-            K kernel(first);
+            copyState(&kernel, &first, sizeof kernel);
             kernel.gl_GlobalInvocationID = at * size + uvec3(x, y, z);
             kernel.main();
             count(kernel, sums);

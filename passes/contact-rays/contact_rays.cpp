@@ -3,6 +3,7 @@
 #include "passes/bundles.h"
 #include "passes/materials.h"
 #include "passes/sizes.h"
+#include "shaders/records/contact.h"
 
 namespace fovea::passes {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 using namespace graph;
 
 // Bytes of the records in contact_sources.glsl.
-constexpr uint32_t kSourceBytes = 48, kTallyBytes = 8, kCountBytes = 8;
+constexpr uint32_t kSourcesBytes = 128, kTallyBytes = 8, kCountBytes = 8;
 
 void declarePorts(PassDeclaration& d) {
   constexpr Usage read = Usage::StorageRead, write = Usage::StorageWrite;
@@ -52,8 +53,9 @@ class ContactRays : public Pass {
     declarePorts(d);
     declareParameters(d);
     constexpr Usage readWrite = Usage::StorageRead | Usage::StorageWrite;
-    d.scratch("sources", buffer("ContactSource", kSourceBytes, countOf("vpls")), readWrite,
-              "the VPLs by their weights");
+    const SizeExpr fours = ceilDiv(countOf("vpls"), 4 * int(kContactSubsets)) * int(kContactSubsets);
+    d.scratch("sources", buffer("ContactSources", kSourcesBytes, fours), readWrite,
+              "the VPLs by their weights, four of a subset together");
     d.scratch("counts", buffer("Count", kCountBytes, countOf("vpls")), readWrite | Usage::TransferWrite,
               "rays of this frame to each VPL, and those that reached it");
     d.scratch("unfiltered", image2D(VK_FORMAT_R32G32B32A32_SFLOAT, viewWidth(), viewHeight()), readWrite,
@@ -61,7 +63,7 @@ class ContactRays : public Pass {
     d.counter("pixels", "pixels where surfaces meet");
     d.counter("rays", "rays traced towards VPLs");
     d.fill("counts", 0);
-    d.step("contact-rays/sources.comp").threads(countOf("vpls"));
+    d.step("contact-rays/sources.comp").threads(countOf("sources"));
     d.step("contact-rays/trace.comp")
         .define("RAY_PASSAGE", fullMaterials())
         .define("HISTORY", wired("origin"))

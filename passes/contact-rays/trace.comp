@@ -6,13 +6,15 @@
 #include "sampling/random.glsl"
 #include "scene/history.glsl"
 #include "records/contact.h"
+#include "records/vpl.h"
 #include "rays/visibility.glsl"
 #include "contact_sources.glsl"
 #include "contact_surface.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-LIST(readonly, ContactSource, sources);
+LIST(readonly, ContactSources, sources);
+LIST(readonly, Vpl, vpls);
 LIST(restrict, uvec2, counts);  // rays to each VPL, and those that reached it
 #if HISTORY
 IMAGE(r32ui, readonly, uimage2D, origin);
@@ -29,49 +31,56 @@ layout(push_constant) uniform Constants {
 CONSTANT uint kBlocks = 16u;
 
 // cos_s cos_l / (d^2 + A / pi) / d^2, in the form in which pass deferred has it, times the weight.
-float unhidden(ContactSource light, ContactSurface s) {
-  vec3 d = s.position - light.position;
-  float d2 = max(dot(d, d), 1e-12);
-  return light.weight * max(-dot(s.normal, d), 0.0) * max(dot(light.normal, d), 0.0) / (d2 * (d2 + light.area));
+vec4 unhidden(ContactSources light, ContactSurface s) {
+  vec4 x = vec4(s.position.x) - light.x, y = vec4(s.position.y) - light.y, z = vec4(s.position.z) - light.z;
+  vec4 d2 = max(x * x + y * y + z * z, vec4(1e-12));
+  vec4 facing = max(-(s.normal.x * x + s.normal.y * y + s.normal.z * z), vec4(0.0));
+  vec4 along = max(light.normalX * x + light.normalY * y + light.normalZ * z, vec4(0.0));
+  return light.weight * facing * along / (d2 * (d2 + light.area));
 }
 
 // From all VPLs by those of one subset. offset: of the rays' places in the sum, from 0 to 1.
 vec3 lightOf(uint subset, ContactSurface s, float offset) {
   vec3 away = normalize(s.position - view.eye), start = s.position + (s.normal - away) * rayEpsilon();
   // The sum before each block of sources, with which rays skip the blocks that are not theirs.
-  const uint all = kContactSubsets * kBlocks;
-  uint end = uint(sources.list.length()), width = (end + all - 1u) / all * kContactSubsets;
+  uint fours = uint(sources.list.length()) / kContactSubsets, first = subset * fours;
+  uint width = (fours + kBlocks - 1u) / kBlocks;
   float starts[kBlocks];
   float sum = 0.0;
   for (uint b = 0u; b < kBlocks; ++b) {
     starts[b] = sum;
-    uint first = subset + b * width, last = min(first + width, end);
-    for (uint i = first; i < last; i += kContactSubsets) sum += unhidden(sources.list[i], s);
+    vec4 light = vec4(0.0);
+    for (uint i = b * width; i < min((b + 1u) * width, fours); ++i) light += unhidden(sources.list[first + i], s);
+    sum += dot(light, vec4(1.0));
   }
   if (!(sum > 0.0)) return vec3(0.0);
   // The places of the rays in the sum grow, so that one way through the list passes all of them.
   vec3 light = vec3(0.0);
-  uint chosen = subset, block = 0u, next = subset;
-  float before = 0.0, own = 0.0;
+  vec4 four = vec4(0.0);
+  uint chosen = 0u, block = 0u, next = 0u;  // numbers in the subset
+  float before = 0.0, own = 0.0, weight = 1.0;
   for (uint k = 0u; k < constants.rays; ++k) {
     float place = (float(k) + offset) / float(constants.rays) * sum;
     for (; block + 1u < kBlocks && starts[block + 1u] <= place && starts[block + 1u] < sum; ++block) {
-      next = subset + (block + 1u) * width;
+      next = 4u * (block + 1u) * width;
       before = starts[block + 1u];
       own = 0.0;
     }
-    for (; next < end && before + own <= place; next += kContactSubsets) {
-      float light_ = unhidden(sources.list[next], s);
-      if (!(light_ > 0.0)) continue;
+    for (; next < 4u * fours && before + own <= place; ++next) {
+      uint i = first + next / 4u, lane = next % 4u;
+      if (lane == 0u) four = unhidden(sources.list[i], s);
+      if (!(four[lane] > 0.0)) continue;
       before += own;
-      own = light_;
+      own = four[lane];
       chosen = next;
+      weight = sources.list[i].weight[lane];
     }
-    vec3 to = sources.list[chosen].position - start, share = visibility(Ray(start, to, 0.0, kContactRayEnd));
-    atomicAdd(counts.list[chosen].x, 1u);
+    uint slot = slotOf(subset, chosen);
+    vec3 to = vpls.list[slot].position - start, share = visibility(Ray(start, to, 0.0, kContactRayEnd));
+    atomicAdd(counts.list[slot].x, 1u);
     if (share == vec3(0.0)) continue;
-    atomicAdd(counts.list[chosen].y, 1u);
-    light += share * sources.list[chosen].color;
+    atomicAdd(counts.list[slot].y, 1u);
+    light += share * vpls.list[slot].intensity / weight;
   }
   return light * (sum * float(kContactSubsets) / (float(constants.rays) * kPi));
 }
