@@ -35,7 +35,7 @@ uint prefixSum(uint own) {
   return sums[i];
 }
 
-// So many that the list will probably be full.
+// The number of paths that will probably fill the list.
 uint pathsOfNextRound(LightPaths p) {
   uint tried = p.first + p.count, left = kPathsPerVpl * constants.count + kPathsBeside - tried;
   if (p.full != 0u) return 0u;

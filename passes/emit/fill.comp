@@ -19,7 +19,7 @@ const float kFarthest = 3.4e38;
 shared vec2 brightest[kGroup];  // brightness, and index as bits
 shared vec3 lows[kGroup], highs[kGroup];
 
-// Of equal ones the first.
+// The brighter one of two VPLs, or the first if they are equal.
 vec2 brighter(vec2 a, vec2 b) {
   return b.x > a.x || (b.x == a.x && floatBitsToUint(b.y) < floatBitsToUint(a.y)) ? b : a;
 }

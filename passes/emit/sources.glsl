@@ -15,14 +15,14 @@ vec3 boxSilhouette(vec3 direction) {
 // inner cone, then a square, whose integral this is.
 float softEdge(LightRecord light) { return (light.cosInner - light.cosOuter) / 3.0; }
 
-// W per channel.
+// The power of a light, W per channel.
 vec3 powerOf(LightRecord light) {
   if (light.type == kLightDirectional) return light.intensity * dot(boxSilhouette(light.direction), vec3(1.0));
   if (light.type == kLightPoint) return light.intensity * (4.0 * kPi);
   return light.intensity * (2.0 * kPi * ((1.0 - light.cosInner) + softEdge(light)));
 }
 
-// The mean of the channels, W; triangles count by one of their sides.
+// The power of one side of all emissive triangles, W, as the mean of the channels.
 float emissivePower() { return emitterCount() > 0u ? kPi * emittersPower(1u) : 0.0; }
 
 // ---- The start of a path -------------------------------------------------------------------------------------------
