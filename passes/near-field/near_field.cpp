@@ -49,10 +49,9 @@ void declarePorts(PassDeclaration& d) {
   d.parameter("saccade_samples", integer(1, 1, 16),
               "rays per sample in the fovea for 8 frames after a jump of the gaze, as the history of a new "
               "fovea is that of wide blocks, and up to so many when light changes");
-  d.parameter(
-      "emitter_points", integer(4, 1, 64),
-      "points on emissive surfaces and in an environment map, of which the ray aimed at them chooses "
-      "one; for a map there are as many cosine-weighted ones beside them");
+  d.parameter("emitter_points", integer(4, 1, 64),
+              "points on emissive surfaces and in an environment map, of which the ray aimed at them chooses "
+              "one; for a map there are as many cosine-weighted ones beside them");
   d.parameter("light", choice("all", {"none", "map", "all"}),
               "`map` brings the light of the scene's environment map alone, `none` nothing");
   d.counter("rays", kRaysDoc);
