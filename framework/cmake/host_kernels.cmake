@@ -17,6 +17,13 @@ else()
   set(FOVEA_FLOAT_LITERALS -fsingle-precision-constant)
 endif()
 
+# fovea_host_shaders(<source>...): the sources include shaders (shaders/device/language.h).
+function(fovea_host_shaders)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON
+    COMPILE_OPTIONS "${FOVEA_FLOAT_LITERALS};-fno-math-errno;-Wno-unused;-Wno-unused-parameter"
+    INCLUDE_DIRECTORIES "${PROJECT_SOURCE_DIR}/shaders;${PROJECT_SOURCE_DIR}/passes")
+endfunction()
+
 # fovea_host_kernel(<target> <shader> [<macro>=<value>,<value>...]...): the shader, such as gbuffer/resolve.comp, with
 # each combination of the values of its macros, becomes a source file of the target.
 function(fovea_host_kernel target shader)
@@ -54,8 +61,6 @@ function(fovea_host_kernel target shader)
     set(file ${CMAKE_CURRENT_BINARY_DIR}/host_kernels/${file}.cpp)
     configure_file(${PROJECT_SOURCE_DIR}/framework/cmake/host_kernel.cpp.in ${file} @ONLY)
     target_sources(${target} PRIVATE ${file})
-    set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON
-      COMPILE_OPTIONS "${FOVEA_FLOAT_LITERALS};-fno-math-errno;-Wno-unused;-Wno-unused-parameter"
-      INCLUDE_DIRECTORIES "${PROJECT_SOURCE_DIR}/shaders;${PROJECT_SOURCE_DIR}/passes")
+    fovea_host_shaders(${file})
   endforeach()
 endfunction()

@@ -1,7 +1,6 @@
 // Compiles a kernel of a pass for the host. The source file of a kernel (framework/cmake/host_kernels.cmake makes one for
 // each) includes this header and then, inside of a struct that derives from Kernel, the shader: what is global in GLSL is
-// a member there. The functions and types that the shader needs of GLSL are those of glm; the qualifiers become macros,
-// so that nothing may be included after this header but shaders.
+// a member there. The functions and types that the shader needs of GLSL are those of glm.
 #pragma once
 
 #include <atomic>
@@ -169,25 +168,5 @@ void runKernel(const graph::HostDispatch& dispatch, Passing passing) {
 
 }  // namespace fovea::host
 
-// ---- The language (shaders/device/language.glsl) --------------------------------------------------------------------
-
-#define FOVEA_LANGUAGE_GLSL
-#define FOVEA_DEVICE_TEXELS_GLSL
-#define FOVEA_TABLES_GLSL
-
-#define CONSTANT static inline const
-#define INOUT(type) type&
-#define OUT(type) type&
-#define DECLARE(function)
-#define IMAGE(format, access, type, name) type name = port<type>(#name)
-#define LIST(access, type, name) List<type> name = port<List<type>>(#name)
-#define VALUE(access, type, name) Single<type> name = port<Single<type>>(#name)
-#define TEXTURE(type, name) type name = port<type>(#name)
-#define LARGE_TEXELS(type, name) Texels<type> name = port<Texels<type>>(#name)
-#define SCENE_TEXELS(number, type, name)
-#define texelOf(name, i) name[i]
-#define COUNTERS struct Counters
-#define layout(...)
-#define uniform struct
-#define precise
-#define in
+// The qualifiers become macros: what follows can only be shaders.
+#include "shaders/device/language.h"

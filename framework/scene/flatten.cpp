@@ -7,12 +7,12 @@
 
 #include "fovea/error.h"
 #include "framework/base/budget.h"
-#include "framework/scene/materials/tangents.h"
 #include "framework/scene/motion/deform.h"
 #include "framework/scene/motion/motion.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
 #include "framework/scene/subdivision/subdivision.h"
+#include "framework/scene/tables/tangents.h"
 
 namespace fovea::scene {
 namespace {

@@ -1,5 +1,4 @@
 // A part of the mean light under the lobe of each mirror: that of one ray. Define: RAY_PASSAGE as 1.
-#include "materials/visible_normals.glsl"
 #include "rays/gather_cache.glsl"
 #include "mirror.glsl"
 

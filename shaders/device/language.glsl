@@ -1,5 +1,5 @@
 // The macros with which a header or a kernel is GLSL and C++ alike. The build compiles the kernels of the stock passes
-// that trace rays for the host as well. There these macros have other definitions (framework/host/kernel.h), and a
+// that trace rays for the host as well. There these macros have other definitions (device/language.h), and a
 // binding is a member of the kernel.
 //
 // Such code has no recursion, no swizzles and no names that C++ reserves. Its float literals have a decimal point. Of

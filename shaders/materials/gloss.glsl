@@ -5,6 +5,7 @@
 #ifndef FOVEA_GLOSS_GLSL
 #define FOVEA_GLOSS_GLSL
 
+#include "materials/microfacets.glsl"
 #include "records/mirror.h"
 #include "scene/scene.glsl"
 
@@ -42,9 +43,6 @@ float tracedShare(vec4 specular) {
   float last = (looksMetallic(specular) ? kTracedMetal : kTracedDielectric) + kTracedFade;
   return vec3(specular) == vec3(0.0) ? 0.0 : clamp((last - specular.a) / kTracedFade, 0.0, 1.0);
 }
-
-// GGX's alpha of a perceptual roughness.
-float ggxAlpha(float roughness) { return max(roughness * roughness, 1e-3); }
 
 // ---- Albedos -----------------------------------------------------------------------------------------------------
 
@@ -97,24 +95,6 @@ float dielectricAlbedo(float f0, float f90, MirrorAlbedo a, MirrorAlbedo mean) {
 }
 
 // ---- Light from one direction --------------------------------------------------------------------------------------
-
-// Where Fresnel's factor lies between F0 (0) and F90 (1): Schlick's curve for metals, for dielectrics a polynomial that
-// is within 0.002 of the exact curve. cosine: between light and microfacet.
-float fresnelCurve(float cosine, float metallic) {
-  float u = 1.0 - clamp(cosine, 0.0, 1.0), u2 = u * u, u4 = u2 * u2;
-  float dielectric = u2 * (-0.03423537 + u * (0.48114462 - 0.04706973 * u2)) + 0.60016048 * u4 * u4;
-  return mix(dielectric, u4 * u, metallic);
-}
-
-// D G / (4 cos cos): GGX's distribution of microfacets (Walter et al., EGSR 2007) with height-correlated masking
-// (Heitz, JCGT 2014), per sr. Directions are unit; halfway: between `from` and `to`.
-float ggxReflection(vec3 normal, vec3 from, vec3 to, vec3 halfway, float alpha) {
-  vec3 across = cross(normal, halfway);  // the sine is exact where the cosine is almost 1
-  float a2 = alpha * alpha, cosine = dot(normal, halfway), s = dot(across, across) + a2 * cosine * cosine;
-  float in_ = max(dot(normal, from), 1e-6), out_ = max(dot(normal, to), 1e-6);
-  float masking = in_ * sqrt(a2 + (1.0 - a2) * out_ * out_) + out_ * sqrt(a2 + (1.0 - a2) * in_ * in_);
-  return a2 / (kPi * s * s) * 0.5 / masking;
-}
 
 // A surface as light from single directions finds it, with all that does not depend on these.
 struct Reflector {

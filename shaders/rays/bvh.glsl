@@ -1,9 +1,10 @@
-// Rays through the two trees of bounding boxes on the device, of triangles that never move and of all others. It is a
-// part of rays/trace.glsl, which is what shaders include.
+// Rays through the two trees of bounding boxes, of triangles that never move and of all others. It is a part of
+// rays/trace.glsl, which is what shaders include, on devices, and of the project's own tracer on the host
+// (framework/scene/rays/ray_tracer_bvh.cpp).
 #ifndef FOVEA_RAYS_BVH_GLSL
 #define FOVEA_RAYS_BVH_GLSL
 
-SCENE_TEXELS(11, uvec4, rayNodes);      // BvhNode
+SCENE_TEXELS(11, uvec4, rayNodes);  // BvhNode
 SCENE_TEXELS(12, uvec4, rayTriangles);  // leaf by leaf: vertices, triangle and kRayHoles
 
 // ---- Boxes and triangles -----------------------------------------------------------------------------------------
@@ -17,7 +18,9 @@ struct PreparedRay {
 };
 
 // The components of v in cyclic order, so that `third` comes last.
-vec3 permuted(vec3 v, int third) { return third == 0 ? v.yzx : third == 1 ? v.zxy : v; }
+vec3 permuted(vec3 v, int third) {
+  return third == 0 ? vec3(v.y, v.z, v.x) : third == 1 ? vec3(v.z, v.x, v.y) : v;
+}
 
 // The ray, prepared.
 PreparedRay prepare(Ray ray) {
@@ -31,13 +34,13 @@ PreparedRay prepare(Ray ray) {
   vec3 a = abs(d);
   r.longest = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
   vec3 p = permuted(d, r.longest);
-  r.shear = vec3(p.xy, 1.0) / p.z;
+  r.shear = vec3(vec2(p), 1.0) / p.z;
   return r;
 }
 
 // Whether the ray meets the box. entry: distance at which it enters. The far side is moved out by the rounding errors
 // (Ize, "Robust BVH Ray Traversal", JCGT 2013), here enough for quotients that are off by 2.5 units in the last place.
-bool enters(PreparedRay r, vec3 low, vec3 high, out float entry) {
+bool enters(PreparedRay r, vec3 low, vec3 high, OUT(float) entry) {
   vec3 a = (low - r.origin) * r.inverse, b = (high - r.origin) * r.inverse;
   vec3 nearer = min(a, b), farther = max(a, b) * (1.0 + 8.0 * 1.1920929e-7);
   entry = max(max(nearer.x, nearer.y), max(nearer.z, r.near));
@@ -47,11 +50,12 @@ bool enters(PreparedRay r, vec3 low, vec3 high, out float entry) {
 // Whether the ray meets the triangle a, b, c; distance_: as in RayHit; weights: of b and c. Watertight (Woop, Benthin
 // and Wald, JCGT 2013): `precise`, so that two triangles compute the same for the edge that they share. On the edge
 // itself both are hit.
-bool meets(PreparedRay r, vec3 a, vec3 b, vec3 c, out float distance_, out vec2 weights) {
+bool meets(PreparedRay r, vec3 a, vec3 b, vec3 c, OUT(float) distance_, OUT(vec2) weights) {
   a = permuted(a - r.origin, r.longest);
   b = permuted(b - r.origin, r.longest);
   c = permuted(c - r.origin, r.longest);
-  precise vec2 a2 = a.xy - r.shear.xy * a.z, b2 = b.xy - r.shear.xy * b.z, c2 = c.xy - r.shear.xy * c.z;
+  vec2 shear = vec2(r.shear);
+  precise vec2 a2 = vec2(a) - shear * a.z, b2 = vec2(b) - shear * b.z, c2 = vec2(c) - shear * c.z;
   precise float u = c2.x * b2.y - c2.y * b2.x, v = a2.x * c2.y - a2.y * c2.x, w = b2.x * a2.y - b2.y * a2.x;
   float determinant = u + v + w;
   distance_ = r.shear.z * (u * a.z + v * b.z + w * c.z) / determinant;
@@ -61,7 +65,7 @@ bool meets(PreparedRay r, vec3 a, vec3 b, vec3 c, out float distance_, out vec2 
 }
 
 // Tests the triangles of a leaf, `count` of them from `first` on. Each hit shortens the ray.
-void meetLeaf(uint first, uint count, inout PreparedRay r, inout RayHit hit) {
+void meetLeaf(uint first, uint count, INOUT(PreparedRay) r, INOUT(RayHit) hit) {
   for (uint i = first; i < first + count; ++i) {
     uvec4 triangle = texelOf(rayTriangles, int(i));
     float distance_;
@@ -69,7 +73,7 @@ void meetLeaf(uint first, uint count, inout PreparedRay r, inout RayHit hit) {
     bool met = meets(r, scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z), distance_,
                      weights);
     uint index = triangle.w & ~kRayHoles;
-    if (met && triangle.w != index) met = solidAt(materialOf(sceneTriangle(index)), uvAt(triangle, weights));
+    if (met && triangle.w != index) met = solidAt(index, triangle, weights);
     if (!met) continue;
     r.far = distance_;
     hit = RayHit(index, distance_, weights);
@@ -90,7 +94,7 @@ RayHit trace(Ray ray, bool any) {
     float nextEntry = 0.0, entry;
     for (uint child = children; child < children + 2u; ++child) {
       uvec4 low = texelOf(rayNodes, int(2u * child)), high = texelOf(rayNodes, int(2u * child + 1u));
-      if (!enters(r, uintBitsToFloat(low.xyz), uintBitsToFloat(high.xyz), entry)) continue;
+      if (!enters(r, uintBitsToFloat(uvec3(low)), uintBitsToFloat(uvec3(high)), entry)) continue;
       if (high.w > 0u) {
         meetLeaf(low.w, high.w, r, hit);
         continue;

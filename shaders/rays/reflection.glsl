@@ -7,7 +7,6 @@
 #include "rays/surfaces.glsl"
 #if RAY_PASSAGE
 #include "materials/full_material.glsl"
-#include "materials/visible_normals.glsl"
 #endif
 
 // Irradiance from the lamps of the scene, W/m^2, with occlusion: traces a ray to each that faces v.

@@ -49,6 +49,11 @@ vec2 uvAt(uvec4 triangle, vec2 weights) {
          sceneUv(triangle.z) * weights.y;
 }
 
+// The same at a point of a triangle with holes. vertices: of the triangle; weights: of the second and third one.
+bool solidAt(uint triangle, uvec4 vertices, vec2 weights) {
+  return solidAt(materialOf(sceneTriangle(triangle)), uvAt(vertices, weights));
+}
+
 // trace() finds the nearest hit, or any if that suffices: on the host by Embree or the project's own tracer, on the
 // device through two trees of bounding boxes (rays/bvh.glsl).
 #ifdef __cplusplus

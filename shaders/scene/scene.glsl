@@ -3,10 +3,9 @@
 #ifndef FOVEA_SCENE_GLSL
 #define FOVEA_SCENE_GLSL
 
+#include "device/constants.glsl"
 #include "scene/octahedral.glsl"
 #include "scene/tables.glsl"
-
-CONSTANT float kPi = 3.14159265358979;
 
 // Diagonal of the scene's bounds, m; above 0.
 float diagonal() { return max(distance(frame.boundsMin, frame.boundsMax), 1e-30); }

@@ -14,7 +14,7 @@
 const float kDullFrom = 0.45, kDullTo = 0.6;
 
 // Of Lobe::grazing: its value on a smooth surface, and the square of the roughness at which it has fallen to 1 / e.
-// With these the layer gets the light that the exact BSDF (framework/scene/materials/bsdf.h) lets through a dielectric
+// With these the layer gets the light that the exact BSDF (passes/path-trace/bsdf.h) lets through a dielectric
 // with an index of refraction of 1.5, within 0.06 above a cosine of 0.1.
 const float kLayerLoss = 0.87, kLayerLossEnd = 0.176;
 

@@ -205,7 +205,9 @@ TEST_P(Movers, MotionVectors) {
     if (index == kAway) return;
     EXPECT_GT(box, 30) << index;
     EXPECT_LT(lost, box / 4) << index;  // edges that the box has uncovered
-    if (index > kAway) EXPECT_GT(moved, 0.5) << index;
+    if (index > kAway) {
+      EXPECT_GT(moved, 0.5) << index;
+    }
   });
 }
 

@@ -8,9 +8,9 @@
 
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/materials/albedo_table.h"
-#include "framework/scene/materials/microfacets.h"
 #include "framework/scene/rays/ray_scene.h"
+#include "passes/path-trace/albedo.h"
+#include "passes/path-trace/microfacets.h"
 #include "shaders/records/rays.h"
 #include "shaders/records/scene.h"
 
@@ -39,9 +39,11 @@ inline float passage(const Scene& scene, const Material& material, glm::vec2 uv,
   const glm::vec4 metalAndRoughness = sampleTexture(scene, material.metallicRoughnessTexture, uv);
   const float enters = material.transmission * sampleTexture(scene, material.transmissionTexture, uv).r *
                        (1 - material.metallic * metalAndRoughness.b);
-  const Albedo a = AlbedoTable::dielectric(1.5f).at(cosine, material.roughness * metalAndRoughness.g);
-  const float f0 = meanChannel(glm::min(normalReflectance(material.ior) * material.specularColor, 1.0f));
-  const float reflects = material.specular * (f0 * a.low + a.high);
+  const path_trace::Albedo a =
+      path_trace::AlbedoTable::dielectric(1.5f).at(cosine, material.roughness * metalAndRoughness.g);
+  const float f0 =
+      meanChannel(glm::min(path_trace::normalReflectance(material.ior) * material.specularColor, 1.0f));
+  const float reflects = material.specular * (f0 * a.normal + a.grazing);
   return std::clamp(meanChannel(glassColor(scene, material, uv)) * enters * (1 - reflects), 0.0f,
                     kMostPassed);
 }

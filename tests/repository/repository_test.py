@@ -23,7 +23,7 @@ ROOMS = {
     "framework/base": ["framework/include"],
     "framework/gpu": ["framework/base"],
     "framework/image": ["framework/base"],
-    "framework/scene": ["framework/gpu", "framework/image", "shaders/records"],
+    "framework/scene": ["framework/gpu", "framework/image", "shaders"],
     "framework/graph": ["framework/gpu", "framework/image"],
     "framework/host": ["framework/graph", "framework/scene"],
     "framework/session": ["framework/graph", "framework/scene"],
@@ -43,7 +43,7 @@ FACADES = ["framework/include", "passes/include", "samples/scenes/builtin/includ
 EXCEPTIONS = {("framework/graph", "framework/scene/frame.h")}
 
 # What computes light for the methods. The path tracer knows none of it, as it proves them; it may ask what a ray hits.
-LIGHT_TRANSPORT = ("framework/scene/materials/", "framework/scene/rays/",
+LIGHT_TRANSPORT = ("framework/scene/tables/", "framework/scene/rays/",
                    "framework/scene/lights.h", "shaders/")
 RAYS_ALONE = "framework/scene/rays/ray_scene.h"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "framework/scene/materials/tangents.h"
 #include "framework/scene/scene.h"
+#include "framework/scene/tables/tangents.h"
 #include "passes/path-trace/materials.h"
 #include "scene_support.h"
 

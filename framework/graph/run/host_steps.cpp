@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 
 #include "fovea/error.h"
 #include "framework/gpu/barrier.h"
@@ -14,11 +15,12 @@ namespace {
 constexpr VkPipelineStageFlags2 kAll = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 constexpr VkAccessFlags2 kAnyAccess = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
-std::vector<uint32_t> portsOf(const KernelState& kernel) {
-  std::vector<uint32_t> accesses;
+// Calls use(access) for the ports that the kernel binds, and for the one that says how many groups of it there are.
+template <class Use>
+void forEachPort(const KernelState& kernel, std::optional<uint32_t> indirect, const Use& use) {
   for (const KernelBinding& b : kernel.bindings)
-    if (b.source == KernelBinding::Source::Port) accesses.push_back(b.access);
-  return accesses;
+    if (b.source == KernelBinding::Source::Port) use(b.access);
+  if (indirect) use(*indirect);
 }
 
 bool isShared(const PassInstance& pass, uint32_t access) {
@@ -55,18 +57,17 @@ void HostSteps::prepare(PassInstance& pass) {
   for (const StepInstance& step : pass.steps) {
     if (!step.kernel || !step.kernel->host) continue;
     copies_.resize(pass.bound->accesses.size());
-    std::vector<uint32_t> accesses = portsOf(*step.kernel);
-    if (step.spec->sizing == StepSpec::Size::Indirect)
-      accesses.push_back(accessOf(*pass.bound, step.spec->sizePort));
-    for (const uint32_t access : accesses) {
+    std::optional<uint32_t> indirect;
+    if (step.spec->sizing == StepSpec::Size::Indirect) indirect = accessOf(*pass.bound, step.spec->sizePort);
+    forEachPort(*step.kernel, indirect, [&](uint32_t access) {
       const Access& a = pass.bound->accesses[access];
-      if (copies_[access].memory || isShared(pass, access)) continue;
+      if (copies_[access].memory || isShared(pass, access)) return;
       copies_[access].memory = gpu::Buffer(
           *pass.state->device,
           {"host copy of " + pass.state->plan->graph->resources[a.resource].name,
            std::max<uint64_t>(16, resourceBytes(pass.desc(a))),
            VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::Readback});
-    }
+    });
   }
   contents_.resize(copies_.size());
 }
@@ -77,10 +78,12 @@ void HostSteps::begin(const PassInstance& pass) {
   for (size_t i = 0; i < contents_.size(); ++i) contents_[i] = pass.bound->accesses[i].reads;
   counters_.assign(pass.counterValues.size(), 0);
   milliseconds_ = waited_ = 0;
+  idle_ = false;
 }
 
 void HostSteps::note(std::span<const StepAccess> accesses) {
   if (copies_.empty()) return;
+  idle_ = false;
   for (const StepAccess& a : accesses)
     if (a.writes) {
       copies_[a.access].fresh = false;
@@ -88,30 +91,32 @@ void HostSteps::note(std::span<const StepAccess> accesses) {
     }
 }
 
-void HostSteps::bringToHost(PassInstance& pass, std::span<const uint32_t> accesses, VkCommandBuffer cmd) {
+void HostSteps::bringToHost(PassInstance& pass, const KernelState& kernel, std::optional<uint32_t> indirect,
+                            VkCommandBuffer& cmd) {
+  const auto isMissing = [&](uint32_t i) { return !copies_[i].fresh && contents_[i] && !isShared(pass, i); };
+  bool missing = false;
+  forEachPort(kernel, indirect, [&](uint32_t i) { missing = missing || isMissing(i); });
+  if (idle_ && !missing) return;
   gpu::memoryBarrier(cmd, kAll, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_COPY_BIT, kAnyAccess);
-  for (const uint32_t i : accesses) {
-    Copy& copy = copies_[i];
-    if (copy.fresh || isShared(pass, i)) continue;
-    copy.fresh = true;
-    if (!contents_[i]) continue;
+  forEachPort(kernel, indirect, [&](uint32_t i) {
+    if (!isMissing(i)) return;
+    copies_[i].fresh = true;
     const Access& a = pass.bound->accesses[i];
-    copyToStaging(cmd, pass.state->resources[a.resource], pass.state->copyIndex(a), a.layout, copy.memory,
-                  resourceBytes(pass.desc(a)));
-  }
+    copyToStaging(cmd, pass.state->resources[a.resource], pass.state->copyIndex(a), a.layout,
+                  copies_[i].memory, resourceBytes(pass.desc(a)));
+  });
   gpu::memoryBarrier(cmd, kAll, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                      VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT);
+  const auto submitted = Clock::now();
+  cmd = pass.state->finishAndBegin();
+  waited_ += millisecondsSince(submitted);
+  idle_ = true;
 }
 
 void HostSteps::run(PassInstance& pass, const KernelState& kernel, std::span<const std::byte> constants,
                     std::array<uint32_t, 3> groups, std::optional<uint32_t> indirect, uint64_t offset,
                     VkCommandBuffer& cmd) {
-  std::vector<uint32_t> accesses = portsOf(kernel);
-  if (indirect) accesses.push_back(*indirect);
-  bringToHost(pass, accesses, cmd);
-  const auto submitted = Clock::now();
-  cmd = pass.state->finishAndBegin();
-  waited_ += millisecondsSince(submitted);
+  bringToHost(pass, kernel, indirect, cmd);
   if (indirect)
     std::memcpy(groups.data(), resourceOf(pass, *indirect, copies_[*indirect].memory).bytes.data() + offset,
                 sizeof groups);
@@ -123,17 +128,18 @@ void HostSteps::run(PassInstance& pass, const KernelState& kernel, std::span<con
   std::ranges::copy(kernel.pipeline->interface().localSize, dispatch.groupSize.begin());
   dispatch.constants = constants;
   dispatch.counters = counters_;
-  dispatch.port = [&](std::string_view name) -> HostResource {
+  const auto port = [&](std::string_view name) -> HostResource {
     for (const KernelBinding& b : kernel.bindings)
       if (b.source == KernelBinding::Source::Port && b.reflected.name == name)
         return resourceOf(pass, b.access, copies_[b.access].memory);
     return {};
   };
+  dispatch.port = std::cref(port);  // which, unlike a copy, takes no memory
   kernel.host(dispatch);
   milliseconds_ += millisecondsSince(start);
   for (const StepAccess& a : kernel.accesses)
     if (a.writes) {
-      copies_[a.access].written = true;
+      copies_[a.access].fresh = copies_[a.access].written = true;
       contents_[a.access] = 1;
     }
 }

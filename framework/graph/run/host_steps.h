@@ -25,8 +25,8 @@ class HostSteps {
 
   // At the start of the pass in a frame: nothing is known of what the device has.
   void begin(const PassInstance& pass);
-  // Runs a kernel, with groups from a buffer port (at `offset` bytes) if `indirect` names its access. `cmd` is ended and
-  // submitted, waited for, and replaced.
+  // Runs a kernel, with groups from a buffer port (at `offset` bytes) if `indirect` names its access. `cmd` is ended,
+  // submitted, waited for, and replaced, unless only kernels on the host came after the last wait.
   void run(PassInstance& pass, const KernelState& kernel, std::span<const std::byte> constants,
            std::array<uint32_t, 3> groups, std::optional<uint32_t> indirect, uint64_t offset,
            VkCommandBuffer& cmd);
@@ -46,12 +46,14 @@ class HostSteps {
     bool fresh = false;    // the same as on the device, or newer
     bool written = false;  // newer than on the device
   };
-  void bringToHost(PassInstance& pass, std::span<const uint32_t> accesses, VkCommandBuffer cmd);
+  void bringToHost(PassInstance& pass, const KernelState& kernel, std::optional<uint32_t> indirect,
+                   VkCommandBuffer& cmd);
 
   std::vector<Copy> copies_;       // per access of the pass; empty if nothing runs on the host
   std::vector<uint8_t> contents_;  // per access: whether it holds anything that a kernel may read
   std::vector<uint64_t> counters_;
   double milliseconds_ = 0, waited_ = 0;
+  bool idle_ = false;  // nothing was recorded since the device was waited for
 };
 
 }  // namespace fovea::graph

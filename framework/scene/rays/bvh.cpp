@@ -132,4 +132,22 @@ class Builder {
 
 Bvh buildBvh(const Geometry& geometry, TriangleRange range) { return Builder(geometry, range).build(); }
 
+BvhTables::BvhTables() : nodes(kBvhTops) { nodes[0].first = kBvhStill; }
+
+uint32_t BvhTables::add(const Bvh& bvh, uint32_t top, const Geometry& geometry,
+                        const std::function<bool(uint32_t)>& hasHoles) {
+  const uint32_t base = uint32_t(nodes.size()) - 1, firstTriangle = uint32_t(triangles.size());
+  const auto placed = [&](BvhNode node) {
+    node.first += node.count > 0 ? firstTriangle : base;
+    return node;
+  };
+  nodes[top] = bvh.order.empty() ? bvh.nodes[0] : placed(bvh.nodes[0]);
+  for (size_t i = 1; i < bvh.nodes.size(); ++i) nodes.push_back(placed(bvh.nodes[i]));
+  for (const uint32_t t : bvh.order) {
+    const Triangle& triangle = geometry.triangles[t];
+    triangles.emplace_back(triangle.v[0], triangle.v[1], triangle.v[2], hasHoles(t) ? t | kRayHoles : t);
+  }
+  return base;
+}
+
 }  // namespace fovea::scene

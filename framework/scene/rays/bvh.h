@@ -1,8 +1,10 @@
-// A bounding volume hierarchy over triangles, in which rays are traced on the host in portable bundles
-// (ray_tracer_bvh.cpp) and on the device (shaders/rays/trace.glsl).
+// A bounding volume hierarchy over triangles, in which rays are traced on devices and, in portable bundles, on the
+// host (shaders/rays/bvh.glsl).
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "framework/scene/scene.h"
@@ -25,5 +27,18 @@ struct Bvh {
 
 // By the binned surface area heuristic (Wald 2007).
 Bvh buildBvh(const Geometry& geometry, TriangleRange range = {});
+
+// Trees as shaders/rays/bvh.glsl reads them.
+struct BvhTables {
+  std::vector<BvhNode> nodes;
+  std::vector<glm::uvec4> triangles;  // vertices, triangle and kRayHoles
+
+  BvhTables();
+  // The root of the tree takes the place `top`, kBvhStill or kBvhMoving; all other nodes follow those that are there.
+  // hasHoles: whether a triangle may have any. Returns the place that the second node of the tree would have if the
+  // first were not elsewhere.
+  uint32_t add(const Bvh& bvh, uint32_t top, const Geometry& geometry,
+               const std::function<bool(uint32_t triangle)>& hasHoles);
+};
 
 }  // namespace fovea::scene

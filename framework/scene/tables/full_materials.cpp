@@ -2,8 +2,7 @@
 
 #include <cstring>
 
-#include "framework/scene/materials/albedo_table.h"
-#include "framework/scene/materials/microfacets.h"
+#include "framework/scene/tables/albedos.h"
 
 namespace fovea::scene {
 namespace {
@@ -14,6 +13,12 @@ void append(const Record& record, std::vector<glm::vec4>& texels) {
   const size_t first = texels.size();
   texels.resize(first + sizeof(Record) / sizeof(glm::vec4));
   std::memcpy(texels.data() + first, &record, sizeof(Record));
+}
+
+// Reflectance of a dielectric at normal incidence; ior 0 stands for infinity.
+float normalReflectance(float ior) {
+  const float root = (ior - 1) / (ior + 1);
+  return ior == 0 ? 1 : root * root;
 }
 
 SurfaceRecord surfaceEntry(const Material& m,
@@ -39,23 +44,6 @@ SurfaceRecord surfaceEntry(const Material& m,
   return record;
 }
 
-glm::vec4 albedoEntry(Albedo metal, Albedo dielectric) {
-  return {metal.total(), metal.high, dielectric.high, 0};
-}
-
-void appendAlbedos(std::vector<glm::vec4>& texels) {
-  const AlbedoTable &metal = AlbedoTable::schlick(), &dielectric = AlbedoTable::dielectric(1.5f);
-  const auto share = [](uint32_t i) { return float(i) / float(kAlbedoSide - 1); };
-  for (uint32_t row = 0; row < kAlbedoSide; ++row)
-    for (uint32_t column = 0; column < kAlbedoSide; ++column) {
-      const float root = kAlbedoLeastRoot + (1 - kAlbedoLeastRoot) * share(column);
-      texels.push_back(
-          albedoEntry(metal.at(root * root, share(row)), dielectric.at(root * root, share(row))));
-    }
-  for (uint32_t row = 0; row < kAlbedoSide; ++row)
-    texels.push_back(albedoEntry(metal.average(share(row)), dielectric.average(share(row))));
-}
-
 TangentRecord tangentEntry(const TriangleTangents& t) {
   TangentRecord record;
   record.corner0 = t.corners[0];
@@ -74,7 +62,7 @@ FullMaterials appendFullMaterials(const Scene& scene, const Geometry& geometry,
   first.firstSurface = uint32_t(texels.size());
   for (const Material& m : scene.materials) append(surfaceEntry(m, textureEntry), texels);
   first.firstAlbedo = uint32_t(texels.size());
-  appendAlbedos(texels);
+  texels.insert(texels.end(), lobeAlbedos().begin(), lobeAlbedos().end());
   if (!geometry.tangents.empty()) {
     first.firstTangent = uint32_t(texels.size());
     for (const TriangleTangents& t : geometry.tangents) append(tangentEntry(t), texels);

@@ -21,30 +21,6 @@ struct Constants {
   uint32_t first, count;
 };
 
-struct Tables {
-  std::vector<BvhNode> nodes = std::vector<BvhNode>(kBvhTops);
-  std::vector<glm::uvec4> triangles;
-
-  // The root of the tree takes the place `top`; all other nodes follow those that are there. Returns the place that its
-  // second node would have if the first were not elsewhere.
-  uint32_t add(const Bvh& bvh, uint32_t top, const Scene& scene, const Geometry& geometry) {
-    const uint32_t base = uint32_t(nodes.size()) - 1, firstTriangle = uint32_t(triangles.size());
-    const auto placed = [&](BvhNode node) {
-      node.first += node.count > 0 ? firstTriangle : base;
-      return node;
-    };
-    nodes[top] = bvh.order.empty() ? bvh.nodes[0] : placed(bvh.nodes[0]);
-    for (size_t i = 1; i < bvh.nodes.size(); ++i) nodes.push_back(placed(bvh.nodes[i]));
-    for (const uint32_t t : bvh.order) {
-      const Triangle& triangle = geometry.triangles[t];
-      const bool holes =
-          triangle.material() < scene.materials.size() && scene.materials[triangle.material()].masked;
-      triangles.emplace_back(triangle.v[0], triangle.v[1], triangle.v[2], holes ? t | kRayHoles : t);
-    }
-    return base;
-  }
-};
-
 }  // namespace
 
 struct RayTables::Impl {
@@ -57,10 +33,13 @@ struct RayTables::Impl {
     const uint32_t all = wanted ? uint32_t(geometry.triangles.size()) : 0;
     const uint32_t still = std::min(geometry.staticTriangles, all);
     const Bvh moving = buildBvh(geometry, {still, all});
-    Tables tables;
-    tables.nodes[0].first = kBvhStill;
-    tables.add(buildBvh(geometry, {0, still}), kBvhStill, scene, geometry);
-    const uint32_t base = tables.add(moving, kBvhMoving, scene, geometry);
+    const auto hasHoles = [&](uint32_t t) {
+      const uint32_t material = geometry.triangles[t].material();
+      return material < scene.materials.size() && scene.materials[material].masked;
+    };
+    BvhTables tables;
+    tables.add(buildBvh(geometry, {0, still}), kBvhStill, geometry, hasHoles);
+    const uint32_t base = tables.add(moving, kBvhMoving, geometry, hasHoles);
     nodes = longTable(device, "nodes that rays meet", std::move(tables.nodes));
     triangles = longTable(device, "triangles that rays meet", std::move(tables.triangles));
     if (moving.order.empty()) return;

@@ -1,4 +1,4 @@
-#include "framework/scene/materials/tangents.h"
+#include "framework/scene/tables/tangents.h"
 
 #include <algorithm>
 #include <array>
