@@ -57,23 +57,27 @@ vec3 lightOf(uint subset, ContactSurface s, float offset) {
   // The places of the rays in the sum grow, so that one way through the list passes all of them.
   vec3 light = vec3(0.0);
   vec4 four = vec4(0.0);
-  uint chosen = 0u, block = 0u, next = 0u;  // numbers in the subset
+  uint chosen = 0u, block = 0u, next = 0u;  // numbers in the subset; next: of fours
   float before = 0.0, own = 0.0, weight = 1.0;
   for (uint k = 0u; k < constants.rays; ++k) {
     float place = (float(k) + offset) / float(constants.rays) * sum;
     for (; block + 1u < kBlocks && starts[block + 1u] <= place && starts[block + 1u] < sum; ++block) {
-      next = 4u * (block + 1u) * width;
+      next = (block + 1u) * width;
       before = starts[block + 1u];
       own = 0.0;
     }
-    for (; next < 4u * fours && before + own <= place; ++next) {
-      uint i = first + next / 4u, lane = next % 4u;
-      if (lane == 0u) four = unhidden(sources.list[i], s);
-      if (!(four[lane] > 0.0)) continue;
+    for (; next < fours && before + own <= place; ++next) {
       before += own;
-      own = four[lane];
-      chosen = next;
-      weight = sources.list[i].weight[lane];
+      four = unhidden(sources.list[first + next], s);
+      own = dot(four, vec4(1.0));
+    }
+    float rest = place - before;
+    for (uint lane = 0u; lane < 4u; ++lane) {
+      if (!(four[lane] > 0.0)) continue;
+      chosen = 4u * (next - 1u) + lane;
+      weight = sources.list[first + next - 1u].weight[lane];
+      if (rest < four[lane]) break;
+      rest -= four[lane];
     }
     uint slot = slotOf(subset, chosen);
     vec3 to = vpls.list[slot].position - start, share = visibility(Ray(start, to, 0.0, kContactRayEnd));

@@ -26,8 +26,9 @@ vec3 visibility(Ray ray, INOUT(uint) rays) {
   vec3 share = vec3(1.0), direction = normalize(ray.direction);
   for (uint pane = 0u; pane < kMaxPanes; ++pane) {
     ++rays;
-    RayHit hit = intersect(ray);
+    RayHit hit = trace(ray, frame.transparent == 0u);
     if (hit.triangle == kNoTriangle) return share;
+    if (frame.transparent == 0u) break;
     uvec4 triangle = sceneTriangle(hit.triangle);
     uint material = materialOf(triangle);
     uint flags = uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);

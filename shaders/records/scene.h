@@ -30,8 +30,8 @@ struct FrameBlock {
   uint firstAlbedo SHARED_ZERO;
   uint firstTangent SHARED_ZERO;
   uint firstDetail SHARED_ZERO;
-  uint unused3 SHARED_ZERO;
-  uint unused4 SHARED_ZERO;
+  uint transparent SHARED_ZERO;  // 1 if full materials let a part of the light through
+  uint unused2 SHARED_ZERO;
 };
 SHARED_SIZE(FrameBlock, 112)
 SHARED_OFFSET(FrameBlock, boundsMin, 32)

@@ -131,8 +131,8 @@ TEST(SharedRecords, Scene) {
                 AT(FrameBlock, firstAlbedo),
                 AT(FrameBlock, firstTangent),
                 AT(FrameBlock, firstDetail),
-                AT(FrameBlock, unused3),
-                AT(FrameBlock, unused4)});
+                AT(FrameBlock, transparent),
+                AT(FrameBlock, unused2)});
   expectLayout(header, "ViewBlock", sizeof(ViewBlock),
                {AT(ViewBlock, worldToView), AT(ViewBlock, viewToClip), AT(ViewBlock, worldToClip),
                 AT(ViewBlock, clipToWorld), AT(ViewBlock, previousWorldToClip), AT(ViewBlock, eye),

@@ -67,6 +67,7 @@ FrameBlock sceneBlock(const Scene& scene, const Geometry& geometry, const FullMa
   block.firstAlbedo = full.firstAlbedo;
   block.firstTangent = full.firstTangent;
   block.firstDetail = full.firstDetail;
+  block.transparent = full.transparent;
   return block;
 }
 

@@ -1,5 +1,6 @@
 #include "framework/scene/tables/full_materials.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "framework/scene/tables/albedos.h"
@@ -59,6 +60,7 @@ FullMaterials appendFullMaterials(const Scene& scene, const Geometry& geometry,
                                   const std::function<TextureRecord(const TextureUse&)>& textureEntry,
                                   std::vector<glm::vec4>& texels) {
   FullMaterials first;
+  first.transparent = std::ranges::any_of(scene.materials, letsLightThrough);
   first.firstSurface = uint32_t(texels.size());
   for (const Material& m : scene.materials) append(surfaceEntry(m, textureEntry), texels);
   first.firstAlbedo = uint32_t(texels.size());

@@ -13,6 +13,7 @@ namespace fovea::scene {
 // Where the parts start in `sceneMaterials`, as in FrameBlock; all 0 if materials are diffuse.
 struct FullMaterials {
   uint32_t firstSurface = 0, firstAlbedo = 0, firstTangent = 0, firstDetail = 0;
+  bool transparent = false;  // whether any material lets a part of the light through
 };
 
 // Appends SurfaceRecords, tables of albedos, and tangents and details of vertices where the scene has any.
