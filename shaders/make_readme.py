@@ -84,6 +84,14 @@ vec3 unshadowed(vec3 position, vec3 normal, vec3 reflectance) {
   return reflectance * sum;
 }
 """),
+    "screen": ("The screen", "Pixels of this frame and of the one before, the surfaces that they show, and their colours.",
+               """\
+#include "scene/scene.glsl"
+#include "screen/pixel_ray.glsl"
+
+// Where the eye sees a surface at a distance from it, world space, m.
+vec3 seenAt(ivec2 pixel, float distance_) { return view.eye + distance_ * normalize(pixelRay(vec2(pixel) + 0.5)); }
+"""),
     "rays": ("Rays", "Rays through the triangles of the scene, and the light that they find, for passes that declare "
              "`rays`.", """\
 #define RAY_PASSAGE 0

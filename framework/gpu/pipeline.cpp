@@ -57,7 +57,7 @@ void checkFeatures(const Device& device, const CompiledShader& shader) {
     if (!device.lacks(feature)) continue;
     throw Error(ExitCode::NoDevice,
                 "shader `" + shader.file + "` uses " + feature + ", which `" + device.name() + "` lacks",
-                "replace it where WITHOUT_" + feature + " is defined, as device/vertex.glsl does");
+                "replace it where WITHOUT_" + feature + " is defined, as scene/drawn_vertex.glsl does");
   }
 }
 

@@ -10,7 +10,7 @@
 #include "device/finite.glsl"
 #include "materials/gloss.glsl"
 #include "scene/motion.glsl"
-#include "scene/pixel_ray.glsl"
+#include "screen/pixel_ray.glsl"
 
 // Images rather than textures, which cost several times as much on a CPU device.
 layout(rgba16f) uniform readonly image2D radiance;

@@ -24,7 +24,7 @@ uniform texture2D gbuffer2Face;
 LARGE_TEXELS(vec4, radiance);
 #endif
 #if TRACED
-#include "scene/eye_paths.glsl"
+#include "vpls/eye_paths.glsl"
 uniform samplerBuffer tracedEnds;
 #endif
 layout(std430) writeonly buffer Candidates { Candidate candidates[]; };

@@ -1,1 +1,1 @@
-#include "scene/compose.glsl"
+#include "screen/compose.glsl"

@@ -1,6 +1,6 @@
 // The surfaces of pixels in contact (pass contacts).
 #include "scene/octahedral.glsl"
-#include "scene/pixel_ray.glsl"
+#include "screen/pixel_ray.glsl"
 
 IMAGE(rg32ui, readonly, uimage2D, contacts);
 

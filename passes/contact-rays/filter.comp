@@ -1,7 +1,7 @@
 // The mean of what was found at a pixel and at the eight around it, as far as they are in contact and show the same
 // surface. A few rays are a poor estimate, and a narrow window hardly widens the shadow of what is close. Define:
 // FILTER 0/1, 0 takes the pixel alone.
-#include "scene/same_surface.glsl"
+#include "screen/same_surface.glsl"
 #include "contact_surface.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

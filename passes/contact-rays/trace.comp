@@ -4,7 +4,7 @@
 // in the next subset. Defines: RAY_PASSAGE 0/1 (rays/trace.glsl); HISTORY 0/1, 1 if `origin` says where there is
 // none.
 #include "sampling/random.glsl"
-#include "scene/history.glsl"
+#include "screen/history.glsl"
 #include "records/contact.h"
 #include "records/vpl.h"
 #include "rays/visibility.glsl"

@@ -26,7 +26,7 @@
 // by their base. Towards its border a shaded patch thus blends into its surroundings, without the noise of an
 // incomplete set of subsets.
 #include "device/texels.glsl"
-#include "scene/same_surface.glsl"
+#include "screen/same_surface.glsl"
 #include "deferred/records.h"
 #if MASKED
 #include "deferred/blocks.glsl"

@@ -7,7 +7,7 @@
 #if FULL
 #include "materials/full_material.glsl"
 #endif
-#include "scene/pixel_ray.glsl"
+#include "screen/pixel_ray.glsl"
 #include "scene/scene.glsl"
 
 uniform utexture2D gbufferTriangle;

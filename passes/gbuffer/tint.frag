@@ -1,7 +1,7 @@
 // What lets light through in front of what is visible. a: the number of its surfaces; rgb: the logarithms of the
 // colours of glass relative to their means, which add up. The share of light that goes through is in the number of rays
 // that do (visibility.frag). Define: CULL 0/1.
-#include "device/fragment.glsl"
+#include "scene/drawn_triangle.glsl"
 #include "materials/passage.glsl"
 #include "scene/scene.glsl"
 

@@ -1,7 +1,7 @@
 // The visible triangle; everything else is computed once per pixel in resolve.frag. Defines: TESTED 0/1, 1 for
 // materials that have to be looked up; CULL 0/1; PASSAGE 0/1, 1 where alphaMode BLEND and thin glass let some of the
 // eye's rays through (stochastic transparency: Enderton et al., I3D 2010).
-#include "device/fragment.glsl"
+#include "scene/drawn_triangle.glsl"
 #include "materials/passage.glsl"
 #include "scene/scene.glsl"
 

@@ -1,4 +1,4 @@
-#include "device/vertex.glsl"
+#include "scene/drawn_vertex.glsl"
 #include "scene/scene.glsl"
 
 #if TESTED

@@ -1,7 +1,7 @@
 // The sample of each pixel: what a ray meets, and the light that leaves from there. Where there are emissive surfaces
 // or an environment map, each path has a second ray that is aimed at these. One of all rays of a pixel is chosen by
 // resampling, weighted by the balance heuristic (Veach and Guibas 1995). Define: RAY_PASSAGE 0/1 (rays/trace.glsl).
-#include "scene/blocks.glsl"
+#include "screen/blocks.glsl"
 #include "sampling/fovea.glsl"
 #include "rays/gather.glsl"
 #include "records/reservoir.h"

@@ -1,5 +1,5 @@
 // Picks the pixel of each block from which a ray of pass reflections leaves, if its surface is smooth enough for one.
-#include "scene/blocks.glsl"
+#include "screen/blocks.glsl"
 #include "materials/gloss.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;

@@ -3,8 +3,8 @@
 // One of the four texels around the previous position is chosen at random with bilinear probabilities, so that
 // sub-pixel motion is correct on average at the cost of one load.
 #include "materials/gloss.glsl"
-#include "scene/history.glsl"
-#include "scene/same_surface.glsl"
+#include "screen/history.glsl"
+#include "screen/same_surface.glsl"
 #include "scene/motion.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;

@@ -25,6 +25,10 @@ void declarePorts(PassDeclaration& d) {
   d.parameter(
       "bounces", integer(2, 1, 64),
       "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
+  d.parameter(
+      "reach", real(4, 1, 1000),
+      "how far rays reach: one goes as far as a distance with a probability of this many times the part "
+      "of the light that discs leave out there, as that of pass near-field");
   d.counter("rays", kRaysDoc);
   d.counter("pixels", "pixels that got rays");
 }

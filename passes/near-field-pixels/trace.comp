@@ -14,12 +14,14 @@ COUNTERS { uint rays, pixels; } counters;
 layout(push_constant) uniform Constants {
   uint samples;
   uint bounces;
+  float reach;
   uint turn_;  // number of this ray, from 0 on in each frame: without a mean over frames, new rays would flicker
 } constants;
 
 CONSTANT uint kEmitterPoints = 4u;
 
 float discArea() { return spread.list[0].x; }
+float reach() { return constants.reach; }
 void noteLength(float distance_, float probability) {}
 vec3 furtherLight(TracedSurface v, uint bounces, uint stream) { return gather(v, bounces, 1u, stream); }
 float underLobe(vec3 direction, float cosine) { return 1.0; }

@@ -2,9 +2,9 @@
 // estimate, and one that hits something bright would be seen as a spot for many frames. Wider or flatter weights would
 // make what has just come into view flicker more, as its brightest sample is dropped. Define: GLOSS 0/1, 1 to do the
 // same with the light under lobes.
-#include "scene/blocks.glsl"
+#include "screen/blocks.glsl"
 #include "records/near_field.h"
-#include "scene/same_surface.glsl"
+#include "screen/same_surface.glsl"
 #include "scene/scene.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -49,6 +49,10 @@ void declarePorts(PassDeclaration& d) {
   d.parameter("saccade_samples", integer(1, 1, 16),
               "rays per sample in the fovea for 8 frames after a jump of the gaze, as the history of a new "
               "fovea is that of wide blocks, and up to so many when light changes");
+  d.parameter(
+      "reach", real(4, 1, 1000),
+      "how far rays reach: one goes as far as a distance with a probability of this many times the part "
+      "of the light that discs leave out there");
   d.parameter("emitter_points", integer(4, 1, 64),
               "points on emissive surfaces and in an environment map, of which the ray aimed at them chooses "
               "one; for a map there are as many cosine-weighted ones beside them");

@@ -1,6 +1,6 @@
 // Divides the picture into tiles and lists the blocks that have a sample, in any order. Define: RAY_PASSAGE 0/1
 // (rays/trace.glsl), MAP_ALONE 0/1, 1 if lamps send no light here.
-#include "scene/blocks.glsl"
+#include "screen/blocks.glsl"
 #include "sampling/fovea.glsl"
 #include "rays/surfaces.glsl"
 #include "records/near_field.h"

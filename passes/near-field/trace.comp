@@ -1,11 +1,11 @@
 // A part of the sample of each block in the list, or all of it: that of one turn. Defines: RAY_PASSAGE and MAP_ALONE
 // (rays/near_light.glsl); GLOSS 0/1, 1 to find also the light under lobes; LOBES 0/1, 1 if the G-buffer says what
 // these are.
-#include "scene/blocks.glsl"
+#include "screen/blocks.glsl"
 #include "device/sums.glsl"
 #include "rays/gather_cache.glsl"
 #include "rays/near_light.glsl"
-#include "scene/same_surface.glsl"
+#include "screen/same_surface.glsl"
 #if LOBES
 #include "receiver_lobe.glsl"
 #endif
@@ -26,12 +26,14 @@ layout(push_constant) uniform Constants {
   uint spacing;
   uint bounces;
   uint emitterPoints;
+  float reach;
   uint frameIndex;
   uint part;   // number of this turn
   uint parts;  // number of turns
 } constants;
 
 float discArea() { return state.value.area; }
+float reach() { return constants.reach; }
 void noteLength(float distance_, float probability) {
   ADD_TO_SUM(state.value.hits, state.value.hitsHigh, 1.0 / probability);
   ADD_TO_SUM(state.value.diagonals, state.value.diagonalsHigh, distance_ / (diagonal() * probability));

@@ -1,6 +1,6 @@
 // Which share of its rays each probe traces: one of so many.
 #include "sampling/fovea.glsl"
-#include "scene/pixel_ray.glsl"
+#include "screen/pixel_ray.glsl"
 #include "probes/layout.glsl"
 
 layout(local_size_x = 64) in;

@@ -2,9 +2,9 @@
 // the direction of the eye's ray, and as far behind it as the thing is before it if the mirror is flat. A convex one
 // brings it nearer, by the mirror equation 1 / image = 1 / thing + 2 * curvature. This point moves on the screen as the
 // reflection does (Tokuyoshi, "Fast temporal reprojection without motion vectors", JCGT 2015).
-#include "scene/history.glsl"
+#include "screen/history.glsl"
 #include "scene/motion.glsl"
-#include "scene/same_surface.glsl"
+#include "screen/same_surface.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;

@@ -1,7 +1,7 @@
 // A texel of pass mirrors. Include after scene/scene.glsl.
 #include "materials/gloss.glsl"
 #include "scene/octahedral.glsl"
-#include "scene/pixel_ray.glsl"
+#include "screen/pixel_ray.glsl"
 #include "records/mirror.h"
 
 IMAGE(rgba32ui, readonly, uimage2D, mirrors);

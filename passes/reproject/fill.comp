@@ -3,7 +3,7 @@
 // surface that have a source, at most FILL pixels away and in its tile; these are nearer than the interleaved samples
 // that shading would gather. If there are none, its whole block is shaded. One tile per work group. Defines:
 // INTERLEAVE, pixels per side of a block; FILL, 0 if no pixels are filled.
-#include "scene/same_surface.glsl"
+#include "screen/same_surface.glsl"
 #include "scene/scene.glsl"
 #include "reproject/records.h"
 

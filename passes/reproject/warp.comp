@@ -4,7 +4,7 @@
 // of the pixel, with similar normals), with bilinear weights. A pixel with too small a weight has no source; the
 // tiles that contain such pixels are listed for fill.comp. Defines: NEAR_FIELD 0/1, whether the light from nearby
 // surfaces, a part of the irradiance, is also warped on its own.
-#include "scene/same_surface.glsl"
+#include "screen/same_surface.glsl"
 #include "scene/scene.glsl"
 #include "reproject/records.h"
 

@@ -3,7 +3,7 @@
 // Transport", 2022, Ch. 9): the pixel is paired with each source, and in a pair a sample counts by the densities with
 // which either would have chosen it. This takes two terms a source instead of one for each two sources.
 // Define: VISIBILITY 0/1, whether who does not see a sample counts as one that could not have chosen it.
-#include "scene/history.glsl"
+#include "screen/history.glsl"
 #include "sampling/reservoir.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,7 +1,7 @@
 // Chooses pixels around each one that show a similar surface. They are spread over a disc: each has a ring of its own,
 // and they turn by the golden section.
-#include "scene/history.glsl"
-#include "scene/same_surface.glsl"
+#include "screen/history.glsl"
+#include "screen/same_surface.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;

@@ -1,8 +1,8 @@
 // Lets the pixels of each block of 4 x 4 of the previous frame change places, all blocks in the same way; the blocks
 // lie elsewhere in each frame (Wyman and Panteleev, "Rearchitecting Spatiotemporal Resampling for Production", HPG
 // 2021). Define: PERMUTE 0/1.
-#include "scene/history.glsl"
-#include "scene/same_surface.glsl"
+#include "screen/history.glsl"
+#include "screen/same_surface.glsl"
 
 layout(rgba32f) uniform readonly image2D previousPosition;
 layout(rgba16f) uniform readonly image2D previousNormal;

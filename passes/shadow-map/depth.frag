@@ -1,7 +1,7 @@
 // Holes of alpha-masked materials let light through, and with full materials so do alphaMode BLEND and thin glass: at
 // some of the texels, the same ones whenever the map is drawn. All other surfaces block it on both sides. Define:
 // PASSAGE 0/1, 1 for the latter two.
-#include "device/fragment.glsl"
+#include "scene/drawn_triangle.glsl"
 #include "materials/passage.glsl"
 #include "scene/scene.glsl"
 

@@ -1,5 +1,5 @@
 // One instance per layer.
-#include "device/vertex.glsl"
+#include "scene/drawn_vertex.glsl"
 #include "scene/scene.glsl"
 #include "vpls/shadow.glsl"
 

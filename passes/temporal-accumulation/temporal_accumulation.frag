@@ -3,7 +3,7 @@
 // same surface. Defines: BLOCKS 0/1, 1 if a texel of `samples` stands for several pixels; CHANGES 0/1, 1 if `change`
 // says by how much light has changed; GLOSS 0/1, 1 if there is other light at the same pixels.
 #include "device/half.glsl"
-#include "scene/same_surface.glsl"
+#include "screen/same_surface.glsl"
 
 // Images rather than textures, which cost several times as much on a CPU device.
 layout(rgba32f) uniform readonly image2D gbufferPosition;

@@ -1,7 +1,7 @@
 // The maps of the shadow atlas side by side, in the order of their slots.
 #include "scene/scene.glsl"
 #include "vpls/paraboloid.glsl"
-#include "scene/colour_map.glsl"
+#include "screen/colour_map.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

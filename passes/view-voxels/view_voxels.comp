@@ -2,7 +2,7 @@
 #include "device/texels.glsl"
 #include "scene/scene.glsl"
 #include "voxels/voxel_trace.glsl"
-#include "scene/colour_map.glsl"
+#include "screen/colour_map.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

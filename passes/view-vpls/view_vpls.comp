@@ -1,6 +1,6 @@
 // Turns the keys of the pixels into colours, over the picture.
 #include "scene/scene.glsl"
-#include "scene/colour_map.glsl"
+#include "screen/colour_map.glsl"
 #include "vpls/vpl.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -2,7 +2,7 @@
 #ifndef FOVEA_WEIGHTS_GLSL
 #define FOVEA_WEIGHTS_GLSL
 
-#include "scene/eye_paths.glsl"
+#include "vpls/eye_paths.glsl"
 #include "voxels/voxel_trace.glsl"
 #include "vpl-intensity/records.h"
 

@@ -7,11 +7,13 @@
 #include "rays/gather.glsl"
 #include "records/near_field.h"
 
-// discArea(): how large the discs of VPLs are, m^2; if 0, rays find out their length and no light. noteLength(): takes
+// discArea(): how large the discs of VPLs are, m^2; if 0, rays find out their length and no light. reach(): rays go so
+// far with a probability of this many times the part of the light that discs leave out there. noteLength(): takes
 // the length of a ray, m, and the probability of going so far. furtherLight(): what gather() would find at v, W/(sr
 // m^2). underLobe(): what light from a direction, which is unit, adds to the mean of the light under the lobe of the
 // surface for each unit of irradiance / pi that it adds; cosine: by which that irradiance counts.
 DECLARE(float discArea());
+DECLARE(float reach());
 DECLARE(void noteLength(float distance_, float probability));
 DECLARE(vec3 furtherLight(TracedSurface v, uint bounces, uint stream));
 DECLARE(float underLobe(vec3 direction, float cosine));
@@ -33,7 +35,7 @@ uint shadedCount = 0u;  // rays at whose ends this invocation has evaluated the 
 // with which a cosine-weighted ray goes so far.
 float discRadius2() { return discArea() / kPi; }
 float partAt(float distance_) { return discRadius2() / (distance_ * distance_ + discRadius2()); }
-float probabilityAt(float distance_) { return min(kSure * partAt(distance_), 1.0); }
+float probabilityAt(float distance_) { return min(reach() * partAt(distance_), 1.0); }
 
 // The light along an aimed ray, divided by the densities of all ways to choose it (balance heuristic). Beside the
 // `points` on surfaces, a cosine-weighted ray counts once, and in the environment as much again as all cosine-weighted
@@ -81,20 +83,20 @@ NearLight nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint
   vec3 direction = cosineDirection(v.normal, streamSequence(stream, 16u * turn_ + order));
   // Rays are traced only as far as they contribute: beyond that, a hit is worth no more than a miss.
   float choice = max(uniformFloat(randomStream(stream, turn_, kChoiceStream, order)), 1e-6), radius2 = discRadius2();
-  float reach = radius2 > 0.0 ? sqrt(radius2 * (kSure / choice - 1.0)) : kFarAway;
+  float farthest = radius2 > 0.0 ? sqrt(radius2 * max(reach() / choice - 1.0, 0.0)) : kFarAway;
   NearLight sum = NearLight(vec3(0.0), vec3(0.0));
   if (hasEmitters() && radius2 > 0.0)
     addPoints(sum, v, points, hashCombine(stream, kNearAimStream), 16u * turn_ + order);
   if (dot(direction, v.face) <= 0.0) return sum;
   bool tracesOutside = hasEnvironmentMap() && radius2 > 0.0;
-  TracedSurface hit = arrive(v.origin, direction, tracesOutside ? kFarAway : reach);
+  TracedSurface hit = arrive(v.origin, direction, tracesOutside ? kFarAway : farthest);
   if (tracesOutside && hit.triangle == kNoTriangle) {
     add(sum, v, hit.brighter * sharedLight(v, rayOutside(v, direction), points), direction);
     return sum;
   }
 #if !MAP_ALONE
   float distance_ = distance(hit.position, v.position);
-  if (!hit.there || (tracesOutside && distance_ > reach)) return sum;
+  if (!hit.there || (tracesOutside && distance_ > farthest)) return sum;
   float probability = radius2 > 0.0 ? probabilityAt(distance_) : 1.0;
   noteLength(distance_, probability);
   if (!(radius2 > 0.0)) return sum;

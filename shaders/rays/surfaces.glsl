@@ -5,7 +5,7 @@
 #define FOVEA_RAYS_SURFACES_GLSL
 
 #include "vpls/paraboloid.glsl"
-#include "scene/pixel_ray.glsl"
+#include "screen/pixel_ray.glsl"
 #include "sampling/random.glsl"
 #include "rays/emitters.glsl"
 #include "rays/visibility.glsl"

@@ -16,7 +16,7 @@ SHARED_CONSTANT float kMiddleWeight =
     2.0f;  // of the pixel in the middle of a row of three; the others have 1
 
 // Samples may share their light if the cosine between their normals exceeds the first, and if one is off the other's
-// tangent plane by at most the second times their distance (onSamePlane() in scene/same_surface.glsl).
+// tangent plane by at most the second times their distance (onSamePlane() in screen/same_surface.glsl).
 SHARED_CONSTANT float kSamePlaneCos = 0.9f;
 SHARED_CONSTANT float kSamePlaneSlope = 0.1f;
 

@@ -10,8 +10,6 @@ SHARED_CONSTANT uint kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kNe
                      kNearAimStream = 0x6e656169u;
 
 SHARED_CONSTANT float kClose = 2.0f;  // an emitter closer than so many widths of a wide block splits it
-SHARED_CONSTANT float kSure =
-    4.0f;  // rays continue with a probability of this many times their share of the light
 SHARED_CONSTANT float kLeastReceived = 0.05f;  // of a cosine that a bent normal replaces
 SHARED_CONSTANT float kTileMiddleWeight =
     3.0f;  // of the tile in the middle of a row of three; the others have 1

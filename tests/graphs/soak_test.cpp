@@ -121,8 +121,9 @@ TEST_P(Soak, LeavesEverythingAsItWas) {
     constexpr uint64_t kAllocator = 4 << 20;  // more or less, by how its blocks fit
     for (uint32_t stage = kWarm + 1; stage < kStages; ++stage)
       EXPECT_EQ(onDevice[stage], onDevice[kWarm]) << stage;
-    if (!FOVEA_SANITIZED && testDeviceOptions().validation == gpu::Validation::Off)
+    if (!FOVEA_SANITIZED && testDeviceOptions().validation == gpu::Validation::Off) {
       EXPECT_LE(resident[kStages - 1], uint64_t(1.02 * double(resident[kWarm])) + kAllocator);
+    }
     // The machine may be busy with something else, so that only much slower frames say something.
     EXPECT_LT(ms[kStages - 1], 2 * ms[kWarm]);
   }

@@ -1,4 +1,4 @@
-// Blocks of pixels that share a sample, as a plain reference for shaders/scene/blocks.glsl.
+// Blocks of pixels that share a sample, as a plain reference for shaders/screen/blocks.glsl.
 #pragma once
 
 #include <cstdint>

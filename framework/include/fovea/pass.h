@@ -142,7 +142,7 @@ class Commands {
   void drawFullscreen();  // for kernels made by PrepareContext::fullscreen
   void draw(uint32_t vertices, uint32_t instances = 1, uint32_t firstInstance = 0);
   // Triangles of the scene, whose indices are those of scene::GpuScene. Shaders know vertex, layer and triangle from
-  // device/vertex.glsl and device/fragment.glsl.
+  // scene/drawn_vertex.glsl and scene/drawn_triangle.glsl.
   void drawTriangles(VkBuffer indices, uint32_t first, uint32_t count, uint32_t instances = 1);
   void drawIndirect(std::string_view bufferPort, uint64_t offset, uint32_t count, uint32_t stride);
 
@@ -189,7 +189,7 @@ class RecordContext : public PassContext {
   Commands use(Kernel kernel);
   // Dynamic rendering into whole images, or into `area` of them, to which viewport and scissor are set. `kernels` are
   // those with which `body` draws, so that everything they read is there when it starts. `layers` is the number of
-  // array layers. If there are several, instances go into the layers of their numbers (device/vertex.glsl), and a
+  // array layers. If there are several, instances go into the layers of their numbers (scene/drawn_vertex.glsl), and a
   // device without shaderOutputLayer runs `body` once for each of them.
   void render(const std::vector<Attachment>& colors, const Attachment* depth, std::span<const Kernel> kernels,
               const std::function<void()>& body, uint32_t layers = 1);

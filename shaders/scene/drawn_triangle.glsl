@@ -1,8 +1,8 @@
 // Which triangle of the scene a fragment belongs to, in draws by Commands::drawTriangles().
 //
-// Needs a vertex shader that includes device/vertex.glsl.
-#ifndef FOVEA_DEVICE_FRAGMENT_GLSL
-#define FOVEA_DEVICE_FRAGMENT_GLSL
+// Needs a vertex shader that includes scene/drawn_vertex.glsl.
+#ifndef FOVEA_DRAWN_TRIANGLE_GLSL
+#define FOVEA_DRAWN_TRIANGLE_GLSL
 
 #ifdef WITHOUT_geometryShader
 layout(location = 15) flat in uint drawn;

@@ -1,8 +1,8 @@
 // Which vertex of the scene a vertex shader is at, in draws by Commands::drawTriangles(), and the layer of the image
 // that it draws into. The framework defines WITHOUT_geometryShader and WITHOUT_shaderOutputLayer where a device lacks
 // these.
-#ifndef FOVEA_DEVICE_VERTEX_GLSL
-#define FOVEA_DEVICE_VERTEX_GLSL
+#ifndef FOVEA_DRAWN_VERTEX_GLSL
+#define FOVEA_DRAWN_VERTEX_GLSL
 
 #ifndef WITHOUT_shaderOutputLayer
 #extension GL_ARB_shader_viewport_layer_array : require
