@@ -56,8 +56,9 @@ class ContactRays : public Pass {
     const SizeExpr fours = ceilDiv(countOf("vpls"), 4 * int(kContactSubsets)) * int(kContactSubsets);
     d.scratch("sources", buffer("ContactSources", kSourcesBytes, fours), readWrite,
               "the VPLs by their weights, four of a subset together");
-    d.scratch("counts", buffer("Count", kCountBytes, countOf("vpls")), readWrite | Usage::TransferWrite,
-              "rays of this frame to each VPL, and those that reached it");
+    d.scratch("counts", buffer("Count", kCountBytes, int(kTallySums) * countOf("vpls")),
+              readWrite | Usage::TransferWrite,
+              "rays of this frame to each VPL, and those that reached it, in several sums");
     d.scratch("unfiltered", image2D(VK_FORMAT_R32G32B32A32_SFLOAT, viewWidth(), viewHeight()), readWrite,
               "light at each pixel in contact");
     d.counter("pixels", "pixels where surfaces meet");

@@ -10,5 +10,7 @@ layout(std430) writeonly buffer TalliesBlock { vec2 list[]; } tallies;
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= uint(tallies.list.length())) return;
-  tallies.list[i] = kTallyKept * history.list[i] + vec2(counts.list[i]);
+  uvec2 sum = uvec2(0u);
+  for (uint list = 0u; list < kTallySums; ++list) sum += counts.list[list * uint(tallies.list.length()) + i];
+  tallies.list[i] = kTallyKept * history.list[i] + vec2(sum);
 }

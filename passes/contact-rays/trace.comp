@@ -15,7 +15,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 LIST(readonly, ContactSources, sources);
 LIST(readonly, Vpl, vpls);
-LIST(restrict, uvec2, counts);  // rays to each VPL, and those that reached it
+LIST(restrict, uvec2, counts);  // rays to each VPL, and those that reached it; kTallySums such lists
 #if HISTORY
 IMAGE(r32ui, readonly, uimage2D, origin);
 #endif
@@ -28,7 +28,7 @@ layout(push_constant) uniform Constants {
   uint frameIndex;
 } constants;
 
-CONSTANT uint kBlocks = 16u;
+CONSTANT uint kBlocks = 64u;
 
 // cos_s cos_l / (d^2 + A / pi) / d^2, in the form in which pass deferred has it, times the weight.
 vec4 unhidden(ContactSources light, ContactSurface s) {
@@ -37,6 +37,12 @@ vec4 unhidden(ContactSources light, ContactSurface s) {
   vec4 facing = max(-(s.normal.x * x + s.normal.y * y + s.normal.z * z), vec4(0.0));
   vec4 along = max(light.normalX * x + light.normalY * y + light.normalZ * z, vec4(0.0));
   return light.weight * facing * along / (d2 * (d2 + light.area));
+}
+
+// The list in which this work group counts: another one than its neighbours, which run at the same time.
+uint ownTallies() {
+  uvec2 group = uvec2(gl_GlobalInvocationID) / 8u;
+  return (group.x + 5u * group.y) % kTallySums * (uint(counts.list.length()) / kTallySums);
 }
 
 // From all VPLs by those of one subset. offset: of the rays' places in the sum, from 0 to 1.
@@ -79,11 +85,11 @@ vec3 lightOf(uint subset, ContactSurface s, float offset) {
       if (rest < four[lane]) break;
       rest -= four[lane];
     }
-    uint slot = slotOf(subset, chosen);
+    uint slot = slotOf(subset, chosen), tally = ownTallies() + slot;
     vec3 to = vpls.list[slot].position - start, share = visibility(Ray(start, to, 0.0, kContactRayEnd));
-    atomicAdd(counts.list[slot].x, 1u);
+    atomicAdd(counts.list[tally].x, 1u);
     if (share == vec3(0.0)) continue;
-    atomicAdd(counts.list[slot].y, 1u);
+    atomicAdd(counts.list[tally].y, 1u);
     light += share * vpls.list[slot].intensity / weight;
   }
   return light * (sum * float(kContactSubsets) / (float(constants.rays) * kPi));

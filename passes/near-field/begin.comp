@@ -8,6 +8,7 @@ layout(local_size_x = 1) in;
 layout(std430) readonly buffer ChangeBlock { vec4 list[]; } change;
 #endif
 layout(std430) buffer StateBlock { NearFieldState value; } state;
+layout(std430) writeonly buffer SumsBlock { NearFieldSums value; } sums;
 layout(std430) writeonly buffer SpreadBlock { vec4 list[]; } spread;
 
 layout(push_constant) uniform Constants {
@@ -33,6 +34,6 @@ void main() {
   state.value.ageing = changed.y;
   float lost = saccade > 0.0 ? 1.0 : changed.z;
   state.value.foveaRays = isFirst != 0u ? 1u : uint(floor(mix(1.0, float(saccadeSamples), lost) + 0.5));
-  state.value.hits = state.value.hitsHigh = state.value.diagonals = state.value.diagonalsHigh = 0u;
+  sums.value = NearFieldSums(0u, 0u, 0u, 0u);
   spread.list[0] = vec4(state.value.area, 0.0, 0.0, 0.0);
 }

@@ -6,10 +6,11 @@
 layout(local_size_x = 1) in;
 
 layout(std430) buffer StateBlock { NearFieldState value; } state;
+layout(std430) readonly buffer SumsBlock { NearFieldSums value; } sums;
 
 void main() {
-  float hits = sumOf(state.value.hits, state.value.hitsHigh);
+  float hits = sumOf(sums.value.hits, sums.value.hitsHigh);
   if (!(hits > 0.0)) return;
-  float now = diagonal() * sumOf(state.value.diagonals, state.value.diagonalsHigh) / hits;
+  float now = diagonal() * sumOf(sums.value.diagonals, sums.value.diagonalsHigh) / hits;
   state.value.meanLength = state.value.meanLength > 0.0 ? mix(now, state.value.meanLength, kLengthKept) : now;
 }

@@ -101,6 +101,8 @@ class NearField : public Pass {
     d.scratch("state", buffer("NearFieldState", sizeof(NearFieldState)), kReadWrite,
               "what is known of the rays' lengths, and what rays of this frame need to know")
         .keep(Lifetime::View);
+    d.scratch("sums", buffer("NearFieldSums", sizeof(NearFieldSums)), kReadWrite,
+              "lengths of the rays of this frame");
     d.scratch("cells", buffer("GatherCell", sizeof(scene::GatherCell), scene::kGatherCells), kReadWrite,
               "light gathered in the frames so far")
         .keep(Lifetime::View);

@@ -12,7 +12,8 @@
 
 layout(local_size_x = 64) in;
 
-VALUE(restrict, NearFieldState, state);
+VALUE(readonly, NearFieldState, state);
+VALUE(restrict, NearFieldSums, sums);
 LIST(restrict, NearFieldTile, tiles);
 LIST(readonly, uint, items);
 VALUE(readonly, uint, listed);
@@ -35,8 +36,8 @@ layout(push_constant) uniform Constants {
 float discArea() { return state.value.area; }
 float reach() { return constants.reach; }
 void noteLength(float distance_, float probability) {
-  ADD_TO_SUM(state.value.hits, state.value.hitsHigh, 1.0 / probability);
-  ADD_TO_SUM(state.value.diagonals, state.value.diagonalsHigh, distance_ / (diagonal() * probability));
+  ADD_TO_SUM(sums.value.hits, sums.value.hitsHigh, 1.0 / probability);
+  ADD_TO_SUM(sums.value.diagonals, sums.value.diagonalsHigh, distance_ / (diagonal() * probability));
 }
 vec3 furtherLight(TracedSurface v, uint bounces, uint stream) {
   return gatheredLight(v, bounces, stream, state.value.cellWidth, state.value.ageing);

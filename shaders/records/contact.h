@@ -10,7 +10,9 @@ SHARED_CONSTANT uint kContactStream = 0x636f6e74u;
 SHARED_CONSTANT uint kContactSubsets = 4u;  // a pixel looks at one of so many subsets of the VPLs in a frame
 SHARED_CONSTANT float kContactRayEnd = 0.999f;  // rays end just before the VPL's surface
 SHARED_CONSTANT float kLeastChance =
-    0.1f;                                  // of a VPL that no ray has reached, relative to one that all reach
+    0.1f;  // of a VPL that no ray has reached, relative to one that all reach
+SHARED_CONSTANT uint kTallySums =
+    16u;  // rays are counted in so many sums, as invocations wait for each other's
 SHARED_CONSTANT float kTallyKept = 0.75f;  // share of the tallies that is kept from frame to frame
 SHARED_CONSTANT float kMiddleWeight =
     2.0f;  // of the pixel in the middle of a row of three; the others have 1

@@ -24,17 +24,19 @@ struct NearFieldState {
   float cellWidth SHARED_ZERO;   // of the cache's cells, m
   float ageing SHARED_ZERO;      // n samples of the cache are worth n / (1 + n ageing)
   uint foveaRays SHARED_ZERO;    // per sample in blocks of 2 x 2 pixels
-  // Sums over the rays of a frame: 1 and the length in diagonals of the scene, each divided by the probability that the
-  // ray goes so far. Pairs of low and high words, in 2^-32.
+};
+SHARED_SIZE(NearFieldState, 20)
+
+// Sums over the rays of a frame: 1 and the length in diagonals of the scene, each divided by the probability that the
+// ray goes so far. Pairs of low and high words, in 2^-32. They are not part of the state, which all rays read while some
+// add to these.
+struct NearFieldSums {
   uint hits SHARED_ZERO;
   uint hitsHigh SHARED_ZERO;
   uint diagonals SHARED_ZERO;
   uint diagonalsHigh SHARED_ZERO;
-  uint unused0 SHARED_ZERO;
-  uint unused1 SHARED_ZERO;
-  uint unused2 SHARED_ZERO;
 };
-SHARED_SIZE(NearFieldState, 48)
+SHARED_SIZE(NearFieldSums, 16)
 
 // `spacing` x `spacing` pixels.
 struct NearFieldTile {
