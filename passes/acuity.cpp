@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <glm/trigonometric.hpp>
 
+#include "framework/scene/fovea.h"
+
 namespace fovea::passes {
 
 namespace {
@@ -20,6 +22,14 @@ void declarePeriphery(graph::PassDeclaration& d, const char* what) {
 Square fineSquare(const scene::View& view, const graph::Parameters& p, int tile) {
   if (p.integer("periphery") == 1) return Square{}.grown(1 << 20);
   return fullDensity(view, tile);
+}
+
+Square foveaSquare(const scene::View& view) {
+  const scene::Fovea fovea = scene::makeFovea(view.gaze, glm::vec2(view.size), view.foveaRadius);
+  // Coordinates far outside would not fit into an integer.
+  const glm::vec2 centre = glm::clamp(fovea.centre, -1e6f, 1e6f);
+  const float radius = std::min(fovea.radius, 1e6f);
+  return {glm::ivec2(glm::floor(centre - radius)), glm::ivec2(glm::ceil(centre + radius))};
 }
 
 Square fullDensity(const scene::View& view, int tile) {

@@ -28,6 +28,9 @@ void declarePeriphery(graph::PassDeclaration& d, const char* what);
 // The square of a view for these parameters; with `periphery` 1 it contains any picture.
 Square fineSquare(const scene::View& view, const graph::Parameters& parameters, int tile);
 
+// The square around the fovea of a view. Its corners may lie outside the picture.
+Square foveaSquare(const scene::View& view);
+
 // The square around the gaze outside which one sample per 2 x 2 pixels is enough: it contains the fovea and all pixels
 // at an eccentricity where the smallest period that the eye resolves is less than 4 pixels. Its corners are multiples
 // of `tile` and may lie outside the picture.

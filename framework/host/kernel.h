@@ -10,8 +10,8 @@
 #include <glm/gtc/packing.hpp>
 #include <glm/integer.hpp>
 #include <mutex>
+#include <span>
 #include <type_traits>
-#include <vector>
 
 #include "framework/base/threads.h"
 #include "framework/host/copy_state.h"
@@ -120,15 +120,39 @@ class Kernel {
   const RayScene& rays_;
 };
 
-// Adds what one invocation has counted.
+// What a kernel changes in itself, which each invocation finds as it was at first: all but its base and its counters.
 template <class K>
-void count(const K& kernel, std::vector<uint64_t>& sums) {
+class State {
+ public:
+  explicit State(K& kernel) : kernel_(kernel), first_(kernel) {
+    if constexpr (requires { kernel.counters; }) {
+      const auto* start = reinterpret_cast<const std::byte*>(&kernel);
+      counters_ = size_t(reinterpret_cast<const std::byte*>(&kernel.counters) - start);
+      behind_ = counters_ + sizeof kernel.counters;
+    }
+  }
+  void restore() {
+    copy(sizeof(Kernel), counters_);
+    copy(behind_, sizeof(K));
+  }
+
+ private:
+  void copy(size_t from, size_t to) {
+    if (from < to)
+      copyState(reinterpret_cast<std::byte*>(&kernel_) + from, reinterpret_cast<std::byte*>(&first_) + from,
+                to - from);
+  }
+  K &kernel_, first_;
+  size_t counters_ = sizeof(Kernel), behind_ = sizeof(Kernel);
+};
+
+// The counters of a kernel, all of which are 32-bit integers.
+template <class K>
+void addCounters(const K& kernel, std::span<uint64_t> sums) {
   if constexpr (requires { kernel.counters; }) {
-    constexpr size_t kCount = sizeof(kernel.counters) / sizeof(uint32_t);
-    uint32_t counted[kCount];
+    uint32_t counted[sizeof(kernel.counters) / sizeof(uint32_t)];
     std::memcpy(counted, &kernel.counters, sizeof counted);
-    sums.resize(kCount);
-    for (size_t i = 0; i < kCount; ++i) sums[i] += counted[i];
+    for (size_t i = 0; i < std::min(std::size(counted), sums.size()); ++i) sums[i] += counted[i];
   }
 }
 
@@ -147,22 +171,20 @@ void runKernel(const graph::HostDispatch& dispatch, Passing passing) {
   std::atomic<uint32_t> next = 0;
   std::mutex mutex;
   onThreads(std::min(threadCount(0), all), [&] {
-    std::vector<uint64_t> sums;
     K kernel(first);
+    State<K> state(kernel);
     for (uint32_t group = next++; group < all; group = next++) {
       const uvec3 at(group % groups.x, group / groups.x % groups.y, group / groups.x / groups.y);
       for (uint z = 0; z < size.z; ++z)
         for (uint y = 0; y < size.y; ++y)
           for (uint x = 0; x < size.x; ++x) {
-            copyState(&kernel, &first, sizeof kernel);
+            state.restore();
             kernel.gl_GlobalInvocationID = at * size + uvec3(x, y, z);
             kernel.main();
-            count(kernel, sums);
           }
     }
     const std::scoped_lock lock(mutex);
-    for (size_t i = 0; i < std::min(sums.size(), dispatch.counters.size()); ++i)
-      dispatch.counters[i] += sums[i];
+    addCounters(kernel, dispatch.counters);
   });
 }
 

@@ -1,5 +1,6 @@
 // Light of VPLs where surfaces meet, by rays.
 #include "fovea/pass.h"
+#include "passes/acuity.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
 #include "passes/sizes.h"
@@ -16,13 +17,16 @@ constexpr uint32_t kSourcesBytes = 128, kTallyBytes = 8, kCountBytes = 8;
 void declarePorts(PassDeclaration& d) {
   constexpr Usage read = Usage::StorageRead, write = Usage::StorageWrite;
   d.input("contacts", image2D(VK_FORMAT_R32G32_UINT), read,
-          "x: bits of the distance from the eye, m; y: octahedral normal; 0 elsewhere (pass contacts)");
+          "x: bits of the distance from the eye, m; y: octahedral normal; 0 elsewhere (pass contacts); only "
+          "those in "
+          "the fovea count");
   d.input("vpls", vplBuffer(), read, "light sources; empty slots have zero intensity");
   d.input("history", buffer("VplTally", kTallyBytes), read, "`tallies` of the previous frame");
   d.input("origin", image2D(VK_FORMAT_R32_UINT), read,
           "0xffffffff where a surface has come into view and has no history (pass motion-vectors)")
       .makeOptional();
-  d.output("light", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("contacts"), heightOf("contacts")), write,
+  d.output("light", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("contacts"), heightOf("contacts")),
+           write | Usage::TransferWrite,
            "rgb: irradiance / pi from VPLs, W/(sr m^2); a: `longer` where surfaces meet, else all 0");
   d.output("tallies", buffer("VplTally", kTallyBytes, countOf("vpls")), write,
            "x: rays to the VPL in a slot, y: those that reached it; a quarter is forgotten in each frame");
@@ -49,7 +53,7 @@ class ContactRays : public Pass {
         "the light of VPLs by rays where surfaces meet in the fovea, in grooves and at the feet "
         "of objects: shadow maps are too coarse for the occlusion there, and the filter of pass "
         "deferred spreads light across edges");
-    d.view().rays();
+    d.view().rays().recorded();
     declarePorts(d);
     declareParameters(d);
     constexpr Usage readWrite = Usage::StorageRead | Usage::StorageWrite;
@@ -63,13 +67,11 @@ class ContactRays : public Pass {
               "light at each pixel in contact");
     d.counter("pixels", "pixels where surfaces meet");
     d.counter("rays", "rays traced towards VPLs");
-    d.fill("counts", 0);
     d.step("contact-rays/sources.comp").threads(countOf("sources"));
     d.step("contact-rays/trace.comp")
         .define("RAY_PASSAGE", fullMaterials())
-        .define("HISTORY", wired("origin"))
-        .over("unfiltered");
-    d.step("contact-rays/filter.comp").define("FILTER", parameter("filter")).over("light");
+        .define("HISTORY", wired("origin"));
+    d.step("contact-rays/filter.comp").define("FILTER", parameter("filter"));
     d.step("contact-rays/tallies.comp").threads(countOf("vpls"));
     return d;
   }
@@ -79,6 +81,21 @@ class ContactRays : public Pass {
     checkSize(ctx, "contacts", {view.width, view.height}, "its view",
               "wire contacts of the view that the pass looks through");
     if (ctx.has("origin")) checkSameSize(ctx, "origin", "contacts");
+  }
+
+  void record(RecordContext& ctx) override {
+    const Square fovea = foveaSquare(ctx.view()).within(ctx.extent("contacts"));
+    const auto overFovea = [&](const char* step) {
+      const glm::uvec2 size(fovea.high - fovea.low);
+      if (size.x > 0 && size.y > 0)
+        ctx.step(step).constant("fovea", fovea.corners()).dispatchThreads(size.x, size.y);
+    };
+    ctx.fill("counts", 0);
+    ctx.clear("light", {});
+    ctx.run("sources");
+    overFovea("trace");
+    overFovea("filter");
+    ctx.run("tallies");
   }
 };
 

@@ -9,18 +9,17 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform readonly image2D unfiltered;
 layout(rgba16f) uniform writeonly image2D light;
 
-layout(push_constant) uniform Constants { float longer; };
+layout(push_constant) uniform Constants {
+  float longer;
+  ivec4 fovea;  // the pixels around it: the first, and behind the last
+};
 
 // Of a pixel in a row of three, by its distance from the middle.
 float rowWeight(int steps) { return steps == 0 ? kMiddleWeight : 1.0; }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(light);
-  if (any(greaterThanEqual(p, size))) return;
-  if (!inContact(p)) {
-    imageStore(light, p, vec4(0.0));
-    return;
-  }
+  ivec2 p = fovea.xy + ivec2(gl_GlobalInvocationID.xy), size = imageSize(light);
+  if (any(greaterThanEqual(p, fovea.zw)) || !inContact(p)) return;
 #if FILTER
   ContactSurface at = contactSurface(p);
   ivec2 low = max(p - 1, 0), high = min(p + 1, size - 1);

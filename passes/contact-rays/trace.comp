@@ -26,6 +26,7 @@ layout(push_constant) uniform Constants {
   uint rays;
   uint firstSamples;
   uint frameIndex;
+  ivec4 fovea;  // the pixels around it: the first, and behind the last
 } constants;
 
 CONSTANT uint kBlocks = 64u;
@@ -103,8 +104,8 @@ uint samplesAt(ivec2 p) {
 }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(p, imageSize(unfiltered))) || !inContact(p)) return;
+  ivec2 p = ivec2(constants.fovea) + ivec2(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(p, ivec2(constants.fovea.z, constants.fovea.w))) || !inContact(p)) return;
   uint samples = samplesAt(p);
   atomicAdd(counters.pixels, 1u);
   atomicAdd(counters.rays, samples * constants.rays);

@@ -47,6 +47,8 @@ void checkPorts(const PassContext& ctx, glm::uvec2 size) {
   }
 }
 
+constexpr Usage kReadWrite = Usage::StorageRead | Usage::StorageWrite;
+
 class NearFieldPixels : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -55,10 +57,16 @@ class NearFieldPixels : public Pass {
     d.rays().recorded();
     declarePorts(d);
     d.scratch("traced", image2D(VK_FORMAT_R32G32B32A32_SFLOAT, viewWidth(), viewHeight()),
-              Usage::StorageRead | Usage::StorageWrite,
+              kReadWrite | Usage::TransferWrite,
               "rgb: what the rays of a pixel found; a: 1 where they did, else 0");
+    d.scratch("items", buffer("uint", 4, viewWidth() * viewHeight()), kReadWrite,
+              "the pixels whose light is not known, in any order");
+    d.scratch("listed", buffer("uint", 4), kReadWrite | Usage::TransferWrite, "how many these are");
+    d.scratch("dispatch", buffer("Dispatch", 4, 3), kReadWrite | Usage::Indirect | Usage::TransferWrite,
+              "indirect dispatch over `items`");
+    d.step("near-field-pixels/list.comp").over("near_field");
     d.step("near-field-pixels/trace.comp").define("RAY_PASSAGE", fullMaterials());
-    d.step("near-field-pixels/write.comp").over("near_field");
+    d.step("near-field-pixels/write.comp").indirect("dispatch");
     return d;
   }
 
@@ -69,8 +77,12 @@ class NearFieldPixels : public Pass {
 
   void record(RecordContext& ctx) override {
     const auto samples = uint32_t(ctx.parameters().integer("samples"));
+    ctx.clear("traced", {});
+    ctx.fill("listed", 0);
+    ctx.fill("dispatch", 1);
+    ctx.run("list");
     for (uint32_t turn = 0; turn < samples; ++turn)
-      ctx.step("trace").constant("turn_", turn).dispatchOver("traced");
+      ctx.step("trace").constant("turn_", turn).dispatchIndirect("dispatch");
     ctx.run("write");
   }
 };

@@ -1,12 +1,13 @@
-// A part of the light of each pixel of the mask where it is not known: that of one ray. Define: RAY_PASSAGE 0/1
+// A part of the light of each listed pixel: that of one ray. Define: RAY_PASSAGE 0/1
 // (rays/trace.glsl).
 #define MAP_ALONE 0
 #include "rays/near_light.glsl"
+#include "screen/history.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;  // kItemsInGroup
 
-IMAGE(r8, readonly, image2D, shadeMask);
-IMAGE(rgba16f, readonly, image2D, nearField);
+LIST(readonly, uint, items);
+VALUE(readonly, uint, listed);
 IMAGE(rgba32f, restrict, image2D, traced);
 LIST(readonly, vec4, spread);
 COUNTERS { uint rays, pixels; } counters;
@@ -27,18 +28,16 @@ vec3 furtherLight(TracedSurface v, uint bounces, uint stream) { return gather(v,
 float underLobe(vec3 direction, float cosine) { return 1.0; }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(pixel, imageSize(traced)))) return;
-  vec4 light = constants.turn_ > 0u ? imageLoad(traced, pixel) : vec4(0.0);
-  if (imageLoad(shadeMask, pixel).r > 0.0 && imageLoad(nearField, pixel).a == 0.0) {
-    TracedSurface v = look(vec2(pixel) + 0.5);
-    if (v.there)
-      light += vec4(nearLight(v, uvec2(pixel), constants.turn_, constants.bounces, kEmitterPoints).light /
-                        float(constants.samples),
-                    0.0);
-    light.a = float(v.there);
-    atomicAdd(counters.rays, rayCount);
-    if (v.there && constants.turn_ == 0u) atomicAdd(counters.pixels, 1u);
-  }
+  uint number = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
+  if (number >= listed.value) return;
+  ivec2 pixel = unpackPixel(items.list[number]);
+  TracedSurface v = look(vec2(pixel) + 0.5);
+  vec4 light = constants.turn_ > 0u ? imageLoad(traced, pixel) : vec4(vec3(0.0), float(v.there));
+  if (v.there)
+    light += vec4(nearLight(v, uvec2(pixel), constants.turn_, constants.bounces, kEmitterPoints).light /
+                      float(constants.samples),
+                  0.0);
+  atomicAdd(counters.rays, rayCount);
+  if (v.there && constants.turn_ == 0u) atomicAdd(counters.pixels, 1u);
   imageStore(traced, pixel, light);
 }

@@ -1,8 +1,13 @@
 // Hands on what the rays have found. Among the pixels of each 4 x 4 block that got one ray each, the brightest one
 // becomes no brighter than the second: a single ray that hits something in the sun would be a firefly. Means of several
 // rays need this less and would lose light.
-layout(local_size_x = 8, local_size_y = 8) in;
+#include "records/near_field.h"
+#include "screen/history.glsl"
 
+layout(local_size_x = 64) in;  // kItemsInGroup
+
+layout(std430) readonly buffer ItemsBlock { uint list[]; } items;
+layout(std430) readonly buffer ListedBlock { uint value; } listed;
 layout(rgba32f) uniform readonly image2D traced;
 layout(rgba16f) uniform writeonly image2D nearField;
 
@@ -24,8 +29,9 @@ vec2 brightestAround(ivec2 pixel) {
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, imageSize(traced)))) return;
+  uint number = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
+  if (number >= listed.value) return;
+  ivec2 pixel = unpackPixel(items.list[number]);
   vec4 light = imageLoad(traced, pixel);
   if (light.a == 0.0) return;
   if (samples == 1u) {

@@ -117,6 +117,9 @@ class NearField : public Pass {
               "samples of the listed blocks, before adjacent tiles share theirs");
     d.scratch("traced_gloss", buffer("vec4", 16, max(fullMaterials() * texels, 1)), kReadWrite,
               "with full materials, as `traced`, for `gloss`");
+    d.scratch("means", buffer("vec4", 16, columns * rows), kReadWrite, "filtered samples of wide tiles");
+    d.scratch("means_gloss", buffer("vec4", 16, max(fullMaterials() * columns * rows, 1)), kReadWrite,
+              "with full materials, as `means`, for `gloss`");
     addSteps(d);
     return d;
   }
@@ -167,7 +170,8 @@ class NearField : public Pass {
         .define("LOBES", wired("gbuffer"));
     d.step("near-field/end.comp").groups(1);
     withRays("near-field/merge.comp").threads(scene::kGatherCells);
-    d.step("near-field/filter.comp").define("GLOSS", fullMaterials()).over("samples");
+    d.step("near-field/filter.comp").define("GLOSS", fullMaterials()).threads(countOf("tiles"));
+    d.step("near-field/write.comp").define("GLOSS", fullMaterials()).over("samples");
   }
 
   // onlyLength: whether the rays that follow find no light.
@@ -182,6 +186,7 @@ class NearField : public Pass {
     if (learns) ctx.run("end");
     ctx.run("merge");
     ctx.run("filter");
+    ctx.run("write");
   }
 };
 

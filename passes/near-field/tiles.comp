@@ -18,9 +18,6 @@ layout(push_constant) uniform Constants {
   uint spacing;
 } constants;
 
-CONSTANT uint kItemsInGroup = 64u;   // of trace.comp
-CONSTANT uint kMostGroups = 32768u;  // in a row of its dispatch
-
 // Whether a lamp is so close that its light differs within a wide block, by what the pixel in its middle shows.
 bool isCloseToEmitter(uvec2 corner) {
 #if MAP_ALONE

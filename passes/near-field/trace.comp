@@ -10,7 +10,7 @@
 #include "receiver_lobe.glsl"
 #endif
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 64) in;  // kItemsInGroup
 
 VALUE(readonly, NearFieldState, state);
 VALUE(restrict, NearFieldSums, sums);

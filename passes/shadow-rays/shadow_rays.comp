@@ -30,11 +30,8 @@ vec3 tracedLight(ivec2 p) {
 }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(p, imageSize(direct)))) return;
-  if (any(lessThan(p, ivec2(constants.fine))) ||
-      any(greaterThanEqual(p, ivec2(constants.fine.z, constants.fine.w))))
-    return;
+  ivec2 p = ivec2(constants.fine) + ivec2(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(p, ivec2(constants.fine.z, constants.fine.w)))) return;
   vec4 before = imageLoad(direct, p);
   if (before.a == 1.0) return;
   atomicAdd(counters.pixels, 1u);

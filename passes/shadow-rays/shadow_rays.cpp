@@ -19,7 +19,7 @@ class ShadowRays : public Pass {
     PassDeclaration d("shadow-rays",
                       "direct light by rays through the triangles, at the edges of shadows, which shadow "
                       "maps widen and shift in steps of their texels");
-    d.view().rays();
+    d.view().rays().recorded();
     d.input(
         "gbuffer", "gbuffer",
         gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo", "emission", "specular"}),
@@ -35,11 +35,7 @@ class ShadowRays : public Pass {
     d.counter("rays", "lights towards which such pixels have traced");
     d.step("shadow-rays/shadow_rays.comp")
         .define("GLOSS", fullMaterials())
-        .define("RAY_PASSAGE", fullMaterials())
-        .constant(
-            "fine",
-            [](const RecordContext& ctx) { return fineSquare(ctx.view(), ctx.parameters(), 1).corners(); })
-        .over("direct");
+        .define("RAY_PASSAGE", fullMaterials());
     return d;
   }
 
@@ -50,6 +46,15 @@ class ShadowRays : public Pass {
     const auto text = [](VkExtent3D e) { return std::to_string(e.width) + "x" + std::to_string(e.height); };
     throw Error(ExitCode::BadInput, "`direct` has " + text(direct) + " pixels, its G-buffer " + text(seen),
                 "wire direct light of the view that the G-buffer shows");
+  }
+
+  void record(RecordContext& ctx) override {
+    const Square fine = fineSquare(ctx.view(), ctx.parameters(), 1).within(ctx.extent("direct"));
+    const glm::ivec2 size = fine.high - fine.low;
+    if (size.x == 0 || size.y == 0) return;
+    ctx.step("shadow_rays")
+        .constant("fine", fine.corners())
+        .dispatchThreads(uint32_t(size.x), uint32_t(size.y));
   }
 };
 

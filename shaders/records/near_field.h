@@ -9,6 +9,9 @@ SHARED_BEGIN(fovea::passes)
 SHARED_CONSTANT uint kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kNearGatherStream = 0x6e656774u,
                      kNearAimStream = 0x6e656169u;
 
+SHARED_CONSTANT uint kItemsInGroup = 64u;   // entries of a list that a work group traces
+SHARED_CONSTANT uint kMostGroups = 32768u;  // in a row of its dispatch
+
 SHARED_CONSTANT float kClose = 2.0f;  // an emitter closer than so many widths of a wide block splits it
 SHARED_CONSTANT float kLeastReceived = 0.05f;  // of a cosine that a bent normal replaces
 SHARED_CONSTANT float kTileMiddleWeight =

@@ -9,6 +9,7 @@ CONSTANT float kSamePlace = 1e-3;   // pixels: does not move
 
 // A pixel as one word, x | y << 16.
 uint packPixel(ivec2 p) { return uint(p.x) | uint(p.y) << 16; }
+ivec2 unpackPixel(uint word) { return ivec2(word & 0xffffu, word >> 16); }
 
 // One of the four pixels around a place, each with its bilinear probability. at: pixels, whose centres are whole
 // numbers here; bits: random, all 32 of them.
