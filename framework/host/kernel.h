@@ -13,6 +13,7 @@
 #include <span>
 #include <type_traits>
 
+#include "fovea/error.h"
 #include "framework/base/threads.h"
 #include "framework/host/copy_state.h"
 #include "framework/host/images.h"
@@ -161,9 +162,13 @@ template <class K>
 void runKernel(const graph::HostDispatch& dispatch, Passing passing) {
   static_assert(std::is_trivially_copyable_v<K>);
   K first(dispatch, passing);
-  if constexpr (requires { first.constants; })
-    std::memcpy(&first.constants, dispatch.constants.data(),
-                std::min(sizeof first.constants, dispatch.constants.size()));
+  if constexpr (requires { first.constants; }) {
+    if (sizeof first.constants != dispatch.constants.size())
+      throw Error(ExitCode::Internal,
+                  "the push constants of a kernel have gaps, which the host does not have",
+                  "put vectors before scalars");
+    std::memcpy(&first.constants, dispatch.constants.data(), sizeof first.constants);
+  }
   if constexpr (requires { first.counters; }) std::memset(&first.counters, 0, sizeof first.counters);
   const uvec3 groups(dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]);
   const uvec3 size(dispatch.groupSize[0], dispatch.groupSize[1], dispatch.groupSize[2]);

@@ -10,19 +10,19 @@ layout(rgba32f) uniform readonly image2D unfiltered;
 layout(rgba16f) uniform writeonly image2D light;
 
 layout(push_constant) uniform Constants {
-  float longer;
   ivec4 fovea;  // the pixels around it: the first, and behind the last
+  float longer;
 };
 
 // Of a pixel in a row of three, by its distance from the middle.
 float rowWeight(int steps) { return steps == 0 ? kMiddleWeight : 1.0; }
 
 void main() {
-  ivec2 p = fovea.xy + ivec2(gl_GlobalInvocationID.xy), size = imageSize(light);
+  ivec2 p = fovea.xy + ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(p, fovea.zw)) || !inContact(p)) return;
 #if FILTER
   ContactSurface at = contactSurface(p);
-  ivec2 low = max(p - 1, 0), high = min(p + 1, size - 1);
+  ivec2 low = max(p - 1, fovea.xy), high = min(p + 1, fovea.zw - 1);
   vec4 sum = vec4(0.0);
   for (int y = low.y; y <= high.y; ++y)
     for (int x = low.x; x <= high.x; ++x) {

@@ -23,10 +23,10 @@ IMAGE(rgba32f, writeonly, image2D, unfiltered);
 COUNTERS { uint pixels, rays; } counters;
 
 layout(push_constant) uniform Constants {
+  ivec4 fovea;  // the pixels around it: the first, and behind the last
   uint rays;
   uint firstSamples;
   uint frameIndex;
-  ivec4 fovea;  // the pixels around it: the first, and behind the last
 } constants;
 
 CONSTANT uint kBlocks = 64u;

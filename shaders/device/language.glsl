@@ -1,11 +1,11 @@
 // The macros with which a header or a kernel is GLSL and C++ alike. The build compiles the kernels of the stock passes
-// that trace rays for the host as well. There these macros have other definitions (device/language.h), and a
-// binding is a member of the kernel.
+// that trace rays for the host as well. There these macros have other definitions (device/language.h), and a binding is
+// a member of the kernel.
 //
 // Such code has no recursion, no swizzles and no names that C++ reserves. Its float literals have a decimal point. Of
 // the functions of images and buffers it calls only imageSize, imageLoad, imageStore, texelFetch, textureSize and
-// atomics. Its work groups have no shared memory and no barriers. A pass of your own that runs on the device alone need
-// not keep to this.
+// atomics. Its push constants have vectors before scalars. Its work groups have no shared memory and no barriers. A
+// pass of your own that runs on the device alone need not keep to this.
 #ifndef FOVEA_LANGUAGE_GLSL
 #define FOVEA_LANGUAGE_GLSL
 

@@ -90,7 +90,10 @@ Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& 
     test.image("origin", VK_FORMAT_R32_UINT, kWidth, kHeight, 1,
                originOf(eye.seen.pixels.size(), settings.fresh));
   test.viewSize(kWidth, kHeight).scene(eye.scene);
-  test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0] = eye.view; });
+  test.beforeFrame([&](PassTest&, scene::Frame& frame) {
+    frame.views[0] = eye.view;
+    frame.views[0].foveaRadius = 2;  // all of the picture
+  });
   test.image("contacts", VK_FORMAT_R32G32_UINT, kWidth, kHeight, 1, contactsOf(eye.seen, settings.contact));
   test.buffer("vpls", vpls, "Vpl");
   test.buffer("history", history, "VplTally");
