@@ -163,11 +163,11 @@ void runKernel(const graph::HostDispatch& dispatch, Passing passing) {
   static_assert(std::is_trivially_copyable_v<K>);
   K first(dispatch, passing);
   if constexpr (requires { first.constants; }) {
-    if (sizeof first.constants != dispatch.constants.size())
+    if (!dispatch.constants.empty() && sizeof first.constants != dispatch.constants.size())
       throw Error(ExitCode::Internal,
                   "the push constants of a kernel have gaps, which the host does not have",
                   "put vectors before scalars");
-    std::memcpy(&first.constants, dispatch.constants.data(), sizeof first.constants);
+    std::memcpy(&first.constants, dispatch.constants.data(), dispatch.constants.size());
   }
   if constexpr (requires { first.counters; }) std::memset(&first.counters, 0, sizeof first.counters);
   const uvec3 groups(dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]);
