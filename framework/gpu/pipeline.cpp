@@ -144,6 +144,7 @@ Pipeline::Pipeline(Device& device, const ComputePipelineDesc& desc)
   checkFeatures(device, *desc.shader);
   MergedStages merged = mergeStages({desc.shader});
   interface_ = std::move(merged.interface);
+  if (desc.onlyInterface) return;
   try {
     createLayout(desc.sharedSet);
     const ShaderModule module(device, merged.spirv[0], name_);

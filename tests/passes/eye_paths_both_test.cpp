@@ -46,7 +46,7 @@ Result run(bool onHost, const std::string& materials, bool emission, uint32_t fr
 
 // Both take the same random numbers, so that they differ by rounding alone; where rays meet glass, that decides whether
 // one passes.
-TEST(EyePathsBoth, FindTheSame) {
+TEST(LongEyePathsBoth, FindTheSame) {
   for (const std::string materials : {"diffuse", "full", "glass"})
     for (const bool emission : {false, true})
       for (const uint32_t frames : {1u, 4u}) {

@@ -155,7 +155,9 @@ void choosePipeline(const ExecutorState& state, KernelState& kernel, std::string
   kernel.key = std::move(key);
 }
 
-std::string keyOf(const gpu::ComputePipelineDesc& desc) { return fmt::format("{:016x}", desc.shader->hash); }
+std::string keyOf(const gpu::ComputePipelineDesc& desc) {
+  return fmt::format("{:016x}{}", desc.shader->hash, desc.onlyInterface ? " on the host" : "");
+}
 
 std::string keyOf(const gpu::GraphicsPipelineDesc& d) {
   std::string key = fmt::format("{:016x} {:016x} {} {} {} {} {} {} {} {} {} {}", d.vertex->hash,
@@ -202,7 +204,12 @@ PrepareContext::PrepareContext(PassInstance& pass)
 gpu::Device& PrepareContext::device() const { return *pass_.state->device; }
 
 Kernel PrepareContext::compute(const std::string& shader, gpu::Defines defines) {
+  return compute(shader, defines, false);
+}
+
+Kernel PrepareContext::compute(const std::string& shader, const gpu::Defines& defines, bool onHost) {
   gpu::ComputePipelineDesc desc;
+  desc.onlyInterface = onHost;
   desc.shader = device().shaders().compile(shader, defines);
   checkRays(pass_, *desc.shader, shader);
   desc.sharedSet = pass_.state->sharedLayout;
@@ -312,7 +319,7 @@ void buildSteps(PassInstance& pass, const std::vector<PlannedStep>& planned) {
     for (const auto& [name, value] : spec.constants) step.constants.emplace_back(name, word(value));
     Kernel kernel;
     if (spec.action == StepSpec::Action::Dispatch)
-      kernel = context.compute(spec.shader, stepDefines(spec, context));
+      kernel = context.compute(spec.shader, stepDefines(spec, context), bool(plan.host));
     if (spec.action == StepSpec::Action::Fullscreen)
       kernel = context.fullscreen(spec.shader, spec.targets, stepDefines(spec, context));
     if (context.has(spec.tileMask))

@@ -114,6 +114,9 @@ class PrepareContext : public PassContext {
                     Defines defines = {});
 
  private:
+  friend void buildSteps(PassInstance& pass, const std::vector<PlannedStep>& planned);
+  // onHost: the kernel is compiled for the host, and needs no pipeline.
+  Kernel compute(const std::string& shader, const Defines& defines, bool onHost);
   PassInstance& pass_;
 };
 
