@@ -10,7 +10,7 @@ extern "C" const char* __asan_default_options() { return "intercept_tls_get_addr
 extern "C" const char* __lsan_default_options();
 extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
 
-// What libraries leak: OpenImageIO's PNG reader leaves a broken file by longjmp, past a string. Its name is that of the
-// library, because names of functions need a symbolizer of the compiler's version.
+// What libraries leak: OpenImageIO's PNG reader leaves a broken file by longjmp, past a string. The
+// suppression names the library, because names of functions need a symbolizer of the compiler's version.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libOpenImageIO.so\n"; }

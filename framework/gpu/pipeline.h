@@ -30,7 +30,8 @@ struct PipelineInterface {
 struct ComputePipelineDesc {
   std::shared_ptr<const CompiledShader> shader;
   VkDescriptorSetLayout sharedSet = VK_NULL_HANDLE;  // layout of set 1; required if the shader uses it
-  // Whether only the interface is wanted, as the shader runs on the host: drivers take long to build pipelines with rays.
+  // Whether the interface suffices, as the shader runs on the host. Drivers take seconds to build pipelines that trace
+  // rays.
   bool onlyInterface = false;
 };
 

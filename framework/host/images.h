@@ -3,7 +3,6 @@
 
 #include <vulkan/vulkan.h>
 
-#include <bit>
 #include <cstring>
 #include <glm/glm.hpp>
 #include <glm/gtc/packing.hpp>
@@ -42,25 +41,12 @@ struct texture2D : Image {
 inline glm::ivec2 imageSize(const Image& image) { return image.size; }
 inline glm::ivec2 textureSize(const texture2D& image, int) { return image.size; }
 
-// The value of 16-bit floats, without the branches of glm::unpackHalf4x16.
-inline glm::vec4 unpackHalves(uint64_t halves) {
-  glm::vec4 values;
-  for (int i = 0; i < 4; ++i) {
-    const uint32_t half = uint32_t(halves >> 16 * i) & 0xffff,
-                   most = (half & 0x7c00) == 0x7c00 ? 0x7f800000 : 0;
-    const float size =
-        std::bit_cast<float>((half & 0x7fff) << 13) * 0x1p112f;  // 2^112: from one exponent to the other
-    values[i] = std::bit_cast<float>(std::bit_cast<uint32_t>(size) | most | (half & 0x8000) << 16);
-  }
-  return values;
-}
-
 inline glm::vec4 loadTexel(const Image& image, glm::ivec2 p) {
   switch (image.format) {
     case VK_FORMAT_R32G32B32A32_SFLOAT:
       return *image.at<glm::vec4>(p);
     case VK_FORMAT_R16G16B16A16_SFLOAT:
-      return unpackHalves(*image.at<uint64_t>(p));
+      return glm::unpackHalf4x16(*image.at<uint64_t>(p));
     case VK_FORMAT_R16G16_SNORM:
       return {glm::unpackSnorm2x16(*image.at<uint32_t>(p)), 0, 1};
     case VK_FORMAT_R32G32_SFLOAT:

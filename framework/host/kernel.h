@@ -1,6 +1,6 @@
 // Compiles a kernel of a pass for the host. The source file of a kernel (framework/cmake/host_kernels.cmake makes one for
 // each) includes this header and then, inside of a struct that derives from Kernel, the shader: what is global in GLSL is
-// a member there. The functions and types that the shader needs of GLSL are those of glm.
+// a member there. GLM provides the functions and types of GLSL.
 #pragma once
 
 #include <atomic>
@@ -121,7 +121,8 @@ class Kernel {
   const RayScene& rays_;
 };
 
-// What a kernel changes in itself, which each invocation finds as it was at first: all but its base and its counters.
+// The state of a kernel that each invocation must find as it was at first: all of it but its base class, which no
+// shader changes, and its counters, which add up.
 template <class K>
 class State {
  public:
@@ -195,5 +196,5 @@ void runKernel(const graph::HostDispatch& dispatch, Passing passing) {
 
 }  // namespace fovea::host
 
-// The qualifiers become macros: what follows can only be shaders.
+// This turns the qualifiers of GLSL into macros, so that only shaders can follow.
 #include "shaders/device/language.h"

@@ -16,10 +16,10 @@ constexpr uint32_t kSourcesBytes = 128, kTallyBytes = 8, kCountBytes = 8;
 
 void declarePorts(PassDeclaration& d) {
   constexpr Usage read = Usage::StorageRead, write = Usage::StorageWrite;
-  d.input("contacts", image2D(VK_FORMAT_R32G32_UINT), read,
-          "x: bits of the distance from the eye, m; y: octahedral normal; 0 elsewhere (pass contacts); only "
-          "those in "
-          "the fovea count");
+  d.input(
+      "contacts", image2D(VK_FORMAT_R32G32_UINT), read,
+      "x: bits of the distance from the eye, m; y: octahedral normal; 0 elsewhere (pass contacts). Pixels "
+      "outside the fovea are ignored");
   d.input("vpls", vplBuffer(), read, "light sources; empty slots have zero intensity");
   d.input("history", buffer("VplTally", kTallyBytes), read, "`tallies` of the previous frame");
   d.input("origin", image2D(VK_FORMAT_R32_UINT), read,
@@ -62,7 +62,7 @@ class ContactRays : public Pass {
               "the VPLs by their weights, four of a subset together");
     d.scratch("counts", buffer("Count", kCountBytes, int(kTallySums) * countOf("vpls")),
               readWrite | Usage::TransferWrite,
-              "rays of this frame to each VPL, and those that reached it, in several sums");
+              "rays of this frame to each VPL, and those that reached it, as several partial sums");
     d.scratch("unfiltered", image2D(VK_FORMAT_R32G32B32A32_SFLOAT, viewWidth(), viewHeight()), readWrite,
               "light at each pixel in contact");
     d.counter("pixels", "pixels where surfaces meet");

@@ -10,7 +10,7 @@ layout(rgba32f) uniform readonly image2D unfiltered;
 layout(rgba16f) uniform writeonly image2D light;
 
 layout(push_constant) uniform Constants {
-  ivec4 fovea;  // the pixels around it: the first, and behind the last
+  ivec4 fovea;  // square around it: its first pixel, and the one behind its last
   float longer;
 };
 

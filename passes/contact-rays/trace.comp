@@ -15,7 +15,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 LIST(readonly, ContactSources, sources);
 LIST(readonly, Vpl, vpls);
-LIST(restrict, uvec2, counts);  // rays to each VPL, and those that reached it; kTallySums such lists
+LIST(restrict, uvec2, counts);  // rays to each VPL, and those that reached it, as kTallySums partial sums
 #if HISTORY
 IMAGE(r32ui, readonly, uimage2D, origin);
 #endif
@@ -23,7 +23,7 @@ IMAGE(rgba32f, writeonly, image2D, unfiltered);
 COUNTERS { uint pixels, rays; } counters;
 
 layout(push_constant) uniform Constants {
-  ivec4 fovea;  // the pixels around it: the first, and behind the last
+  ivec4 fovea;  // square around it: its first pixel, and the one behind its last
   uint rays;
   uint firstSamples;
   uint frameIndex;
@@ -40,7 +40,8 @@ vec4 unhidden(ContactSources light, ContactSurface s) {
   return light.weight * facing * along / (d2 * (d2 + light.area));
 }
 
-// The list in which this work group counts: another one than its neighbours, which run at the same time.
+// Where the partial sums of this work group start. Neighbouring groups, which run at the same time, have different
+// ones.
 uint ownTallies() {
   uvec2 group = uvec2(gl_GlobalInvocationID) / 8u;
   return (group.x + 5u * group.y) % kTallySums * (uint(counts.list.length()) / kTallySums);

@@ -1,4 +1,4 @@
-// Light paths, one an invocation, with a VPL at every hit (Keller 1997). In a round (`stores` 0) only the number of
+// Light paths, one per invocation, with a VPL at every hit (Keller 1997). In a round (`stores` 0) only the number of
 // VPLs of each path is found, by which `accept` chooses the paths that count; those are traced once more to store them,
 // by the same code, so that rounding cannot make them longer. Define: RAY_PASSAGE 0 (rays/trace.glsl).
 #include "emit/sources.glsl"

@@ -1,5 +1,5 @@
-// The macros with which shaders are C++ (shaders/device/language.glsl). Types and functions are those of glm. Nothing may
-// be included after this header but shaders, as it makes words such as `in` disappear.
+// The macros that make shaders valid C++ (shaders/device/language.glsl explains them). GLM provides the types and
+// functions. Nothing but shaders may be included after this header, as it makes words such as `in` disappear.
 #pragma once
 
 #define FOVEA_LANGUAGE_GLSL

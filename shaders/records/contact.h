@@ -12,7 +12,7 @@ SHARED_CONSTANT float kContactRayEnd = 0.999f;  // rays end just before the VPL'
 SHARED_CONSTANT float kLeastChance =
     0.1f;  // of a VPL that no ray has reached, relative to one that all reach
 SHARED_CONSTANT uint kTallySums =
-    16u;  // rays are counted in so many sums, as invocations wait for each other's
+    16u;  // partial sums of the counts of rays, so that fewer threads add to the same one
 SHARED_CONSTANT float kTallyKept = 0.75f;  // share of the tallies that is kept from frame to frame
 SHARED_CONSTANT float kMiddleWeight =
     2.0f;  // of the pixel in the middle of a row of three; the others have 1

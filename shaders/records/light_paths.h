@@ -14,14 +14,14 @@ struct LightPaths {
   uint groupsX SHARED_ZERO;  // work groups of the next round
   uint groupsY SHARED_ZERO;
   uint groupsZ SHARED_ZERO;
-  uint first SHARED_ZERO;        // of the paths of the next round,
-  uint count SHARED_ZERO;        // and how many these are
-  uint paths SHARED_ZERO;        // that count
-  uint stored SHARED_ZERO;       // their VPLs
-  uint full SHARED_ZERO;         // 1 after a path that no longer fits
-  uint bounces SHARED_ZERO;      // most hits of a path
-  float lightPower SHARED_ZERO;  // of the scene's lights, mean of the channels, W
-  float power SHARED_ZERO;       // and of emissive triangles
+  uint first SHARED_ZERO;        // number of the first path of the next round
+  uint count SHARED_ZERO;        // how many paths the next round has
+  uint paths SHARED_ZERO;        // how many paths count so far
+  uint stored SHARED_ZERO;       // how many VPLs these have
+  uint full SHARED_ZERO;         // 1 after a path whose VPLs no longer fit into the list
+  uint bounces SHARED_ZERO;      // the most hits that a path may have
+  float lightPower SHARED_ZERO;  // power of the scene's lights, mean of the channels, W
+  float power SHARED_ZERO;       // that of lights and emissive triangles together, W
   uint unused SHARED_ZERO;
 };
 SHARED_SIZE(LightPaths, 48)

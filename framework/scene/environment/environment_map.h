@@ -26,8 +26,9 @@ class EnvironmentMap {
   uint32_t height() const { return height_; }
   const std::vector<glm::vec3>& texels() const { return texels_; }
   float turn() const { return turn_; }
-  // By these, shaders choose directions in proportion to the light from there (shaders/rays/emitters.glsl): cumulative shares of the light of each row, a
-  // row of the map after the other, and of the rows. All are 0 where the map is black.
+  // With these, shaders choose directions in proportion to the light that comes from there (shaders/rays/emitters.glsl).
+  // columns() has the cumulative shares of the light within each row, one row of the map after the other, and rows()
+  // those of the rows. All are 0 where the map is black.
   const std::vector<float>& columns() const { return columns_; }
   const std::vector<float>& rows() const { return rows_; }
 

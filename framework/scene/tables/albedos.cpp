@@ -25,7 +25,7 @@ float exactCurve(float cosine, float ior) {
 }
 
 // Mean over visible normals; each is worth F * G2 / G1 (Heitz 2018, Eq. 19). The random numbers are a Fibonacci lattice:
-// its rings near the edge hold what little is lost.
+// most of what little light is lost is lost near its edge.
 vec4 integrate(float cosine, float roughness) {
   const float alpha = ggxAlpha(roughness);
   const vec3 eye(sqrt(max(1.0 - cosine * cosine, 0.0)), 0.0, cosine);
