@@ -64,7 +64,7 @@ std::vector<MemberSpec> gbufferOutput() {
              "rgb: diffuse reflectance, base colour times (1 - metallic); with full materials, that of the "
              "diffuse layer as seen from the eye, and a: the metallic share of the surface"),
       member(
-          "emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
+          "emission", ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT)), Usage::ColorAttachment,
           "rgb: emitted radiance, W/(sr m^2), in the background the environment; a: with full materials, the "
           "mean of the channels of `specular` for the dielectric part"),
       member("id", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment,
@@ -107,7 +107,7 @@ std::vector<MemberSpec> voxelMembers(std::initializer_list<std::string_view> nam
 }
 
 std::vector<MemberSpec> voxelMipOutput(const SizeExpr& width, const SizeExpr& size, const SizeExpr& levels) {
-  return {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, width, size, size, levels),
+  return {member("color", ofLight(image3D(VK_FORMAT_R16G16B16A16_SFLOAT, width, size, size, levels)),
                  Usage::StorageRead | Usage::StorageWrite,
                  "rgb: radiance times a; a: surface area relative to the area of a cell's face, over 1 "
                  "where a cell holds several surfaces"),

@@ -133,4 +133,10 @@ std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> te
               "texels of format " + std::string(info.name) + " have no conversion to floats");
 }
 
+VkFormat floatFormat(uint32_t channels) {
+  constexpr VkFormat kFormats[] = {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32_SFLOAT,
+                                   VK_FORMAT_R32G32B32A32_SFLOAT};
+  return kFormats[channels - 1];
+}
+
 }  // namespace fovea::gpu

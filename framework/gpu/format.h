@@ -29,6 +29,9 @@ const FormatInfo& formatInfo(VkFormat format);
 // VK_FORMAT_UNDEFINED if there is no such name.
 VkFormat formatFromName(std::string_view name);
 
+// The format of texels with so many channels, 1 to 4, of 32-bit floats.
+VkFormat floatFormat(uint32_t channels);
+
 // Converts tightly packed texels to floats with interleaved channels: unorm and sRGB to [0, 1] (without removing the
 // sRGB curve), snorm to [-1, 1]. Throws Error(Internal) for integer and packed formats.
 std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> texels);

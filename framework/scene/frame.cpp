@@ -7,6 +7,7 @@
 #include <iterator>
 #include <utility>
 
+#include "framework/scene/lights.h"
 #include "framework/scene/motion/motion.h"
 
 namespace fovea::scene {
@@ -159,6 +160,7 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, c
   f.time = moment.time;
   f.seed = seed;
   f.exposure = scene.exposure;
+  f.preExposure = preExposure(scene);
   f.cameraCut = moment.cameraCut;
   f.saccade = moment.saccade;
   f.lights = lightsAt(scene, f.time);

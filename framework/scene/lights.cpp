@@ -5,6 +5,12 @@
 
 namespace fovea::scene {
 
+float preExposure(const Scene& scene) {
+  if (scene.preExposure > 0) return scene.preExposure;
+  constexpr float kMostStops = 100;  // beyond them, factors and their squares would leave the range of floats
+  return std::exp2(std::clamp(std::round(std::log2(scene.exposure)), -kMostStops, kMostStops));
+}
+
 SpotCone spotCone(const Light& light) {
   const float inner = std::cos(light.innerConeAngle);
   return {inner, std::min(std::cos(light.outerConeAngle), inner - 1e-4f)};

@@ -7,6 +7,9 @@
 
 namespace fovea::scene {
 
+// Factor from radiance to light as passes store it (Frame::preExposure). It is a power of two, so that it rounds nothing.
+float preExposure(const Scene& scene);
+
 // Number of layers in the shadow map: 1 for a directional or spot light, 6 for a point light. The layers of a light
 // follow those of the lights before it.
 uint32_t shadowLayers(const Light& light);

@@ -137,6 +137,7 @@ std::string PassTest::Impl::graphText() const {
 void PassTest::Impl::build() {
   Diagnostics messages;
   const graph::Description description = graph::loadText(graphText(), "pass-test.json", {}, messages);
+  scene.preExposure = 1;  // inputs are given as passes store them
   geometry = rest = scene::flatten(scene);
   session::GraphRun::Options options;
   options.size = size;

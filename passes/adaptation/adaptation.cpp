@@ -17,8 +17,10 @@ class Adaptation : public Pass {
                       "scene file gives one");
     d.view();
     d.input("radiance", image2D(), Usage::Sampled, "rgb: linear radiance, W/(sr m^2), any float format");
-    d.output("exposure", image2D(VK_FORMAT_R32_SFLOAT, 1, 1), Usage::StorageRead | Usage::StorageWrite,
-             "factor from radiance to display intensity; the scene's own exposure if its file gives one")
+    d.output(
+         "exposure", image2D(VK_FORMAT_R32_SFLOAT, 1, 1), Usage::StorageRead | Usage::StorageWrite,
+         "factor from light as passes store it to display intensity; that of the scene's own exposure if its "
+         "file gives one")
         .keep(Lifetime::View);
     d.scratch("tiles", image2D(VK_FORMAT_R32_SFLOAT, kTiles, kTiles),
               Usage::StorageRead | Usage::StorageWrite,
@@ -28,7 +30,7 @@ class Adaptation : public Pass {
     d.parameter("range", real(4, 0, 20, "stops"), "how far the exposure may lie from the scene's own");
     d.parameter("frames", real(25, 0.1, 10000),
                 "time constant: after this many frames, 63% of a change has been followed");
-    const auto sceneExposure = [](const RecordContext& ctx) { return ctx.frame().exposure; };
+    const auto sceneExposure = [](const RecordContext& ctx) { return ctx.frame().storedExposure(); };
     d.step("adaptation/measure.comp").constant("sceneExposure", sceneExposure).over("tiles");
     d.step("adaptation/adapt.comp")
         .constant("sceneExposure", sceneExposure)

@@ -33,8 +33,8 @@ class Compose : public Pass {
         .when(fullMaterials());
     d.input("direct", color, Usage::StorageRead, "rgb: radiance to which the indirect light is added")
         .makeOptional();
-    const ResourceSpec picture =
-        image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.albedo"), heightOf("gbuffer.albedo"));
+    const ResourceSpec picture = ofLight(
+        image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.albedo"), heightOf("gbuffer.albedo")));
     d.output("indirect", picture, Usage::ColorAttachment,
              "rgb: indirect radiance towards the eye, rho E / pi and glossy reflections; background 0");
     d.output("radiance", picture, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");

@@ -25,7 +25,8 @@ void declarePorts(PassDeclaration& d) {
   d.input("origin", image2D(VK_FORMAT_R32_UINT), read,
           "0xffffffff where a surface has come into view and has no history (pass motion-vectors)")
       .makeOptional();
-  d.output("light", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("contacts"), heightOf("contacts")),
+  d.output("light",
+           ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("contacts"), heightOf("contacts"))),
            write | Usage::TransferWrite,
            "rgb: irradiance / pi from VPLs, W/(sr m^2); a: `longer` where surfaces meet, else all 0");
   d.output("tallies", buffer("VplTally", kTallyBytes, countOf("vpls")), write,

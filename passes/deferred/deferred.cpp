@@ -73,7 +73,7 @@ class Deferred : public Pass {
             "`periphery` 2 skips pixels")
         .makeOptional();
     addMask(d);
-    const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
+    const ResourceSpec color = ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height));
     d.output("irradiance", color, Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
              "rgb: filtered indirect irradiance / pi, W/(sr m^2); multiplied by the reflectance rho it gives "
              "`indirect`; background 0; a: 1, or that of `traced`");
@@ -150,8 +150,8 @@ class Deferred : public Pass {
   static SizeExpr coarse() { return parameter("periphery") - 1; }  // 0 or 1
   // An image that is needed for full materials, and else a single texel.
   static ResourceSpec glossImage(const SizeExpr& width, const SizeExpr& height) {
-    return image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(fullMaterials() * width, 1),
-                   max(fullMaterials() * height, 1));
+    return ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(fullMaterials() * width, 1),
+                           max(fullMaterials() * height, 1)));
   }
 
   // Shades the part `area` of the grid of samples, without its part `hole`.

@@ -30,7 +30,8 @@ class Direct : public Pass {
     d.input("maps", "shadow-maps", shadowMapMembers(), "shadow maps of the lights");
     d.output(
         "direct",
-        image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
+        ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"),
+                        heightOf("gbuffer.position"))),
         Usage::ColorAttachment,
         "rgb: radiance towards the eye, W/(sr m^2), in the background that of the environment; a: 0 where "
         "the edge of a shadow lies between texels of a map, else 1");

@@ -25,13 +25,13 @@ void declarePorts(PassDeclaration& d) {
           "surfaces seen by the eye, whose lobes `gloss` is for; if not wired, it is the same as `samples`")
       .when(fullMaterials());
   const SizeExpr width = ceilDiv(viewWidth(), 2), height = ceilDiv(viewHeight(), 2);
-  d.output("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), write,
+  d.output("samples", ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height)), write,
            "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2 block, or of each `spacing` x "
            "`spacing` block outside the fovea; a: code of the sampled pixel and of whether it shows a "
            "surface, for pass temporal-accumulation");
   d.output("gloss",
-           image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(fullMaterials() * width, 1),
-                   max(fullMaterials() * height, 1)),
+           ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(fullMaterials() * width, 1),
+                           max(fullMaterials() * height, 1))),
            write,
            "with full materials, rgb: at the same pixels, the mean of the same light under the lobe of the "
            "surface, W/(sr m^2); a: as in `samples`; otherwise one undefined texel");

@@ -16,14 +16,15 @@ class PathTrace : public Pass {
                       "path tracer: light along all paths of at most `depth` edges, unbiased (ground truth)",
                       PassKind::Host);
     d.view();
-    const ResourceSpec color = image2D(VK_FORMAT_R32G32B32A32_SFLOAT);
+    const ResourceSpec image = image2D(VK_FORMAT_R32G32B32A32_SFLOAT), color = ofLight(image);
     d.output("radiance", color, Usage::HostWrite, "rgb: `direct` plus `indirect`, W/(sr m^2)");
     d.output("direct", color, Usage::HostWrite,
              "rgb: emission plus light from the scene's lights reflected once, as in pass direct; in the "
              "background the environment, which illuminates nothing");
     d.output("indirect", color, Usage::HostWrite,
              "rgb: all other light; light from emissive triangles is included here, as VPLs carry it");
-    d.output("variance", color, Usage::HostWrite, "rgb: estimated variance of the mean `radiance`");
+    d.output("variance", ofLight(image, 2), Usage::HostWrite,
+             "rgb: estimated variance of the mean `radiance`");
     d.output("half_a", color, Usage::HostWrite, "rgb: radiance from one half of the samples");
     d.output("half_b", color, Usage::HostWrite,
              "rgb: radiance from the other half of the samples, independent of `half_a`");

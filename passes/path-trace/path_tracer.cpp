@@ -37,7 +37,8 @@ class Tracer {
  public:
   Tracer(const Frame& frame, const View& view, const RayScene& rays, const PathTraceSettings& settings);
   PathTraceStatistics run();
-  void write(const PathTraceImages& images) const;
+  // unit: factor on radiance.
+  void write(const PathTraceImages& images, double unit) const;
 
  private:
   void round(uint32_t end);
@@ -208,7 +209,7 @@ glm::dvec3 Tracer<Integrator>::halfMean(size_t pixel, uint32_t samples, uint32_t
 }
 
 template <class Integrator>
-void Tracer<Integrator>::write(const PathTraceImages& images) const {
+void Tracer<Integrator>::write(const PathTraceImages& images, double unit) const {
   const auto put = [](std::span<glm::vec4> image, size_t pixel, glm::dvec3 value) {
     if (!image.empty()) image[pixel] = glm::vec4(glm::vec3(value), 1);
   };
@@ -216,12 +217,12 @@ void Tracer<Integrator>::write(const PathTraceImages& images) const {
     const uint32_t samples = film_.rowSamples[pixel / view_.size.x];
     const glm::dvec3 direct = film_.direct[pixel] / double(samples),
                      indirect = film_.indirect[pixel] / double(samples);
-    put(images.radiance, pixel, direct + indirect);
-    put(images.direct, pixel, direct);
-    put(images.indirect, pixel, indirect);
-    put(images.variance, pixel, variance(pixel, samples));
-    put(images.halfA, pixel, halfMean(pixel, samples, 0));
-    put(images.halfB, pixel, halfMean(pixel, samples, 1));
+    put(images.radiance, pixel, unit * (direct + indirect));
+    put(images.direct, pixel, unit * direct);
+    put(images.indirect, pixel, unit * indirect);
+    put(images.variance, pixel, unit * unit * variance(pixel, samples));
+    put(images.halfA, pixel, unit * halfMean(pixel, samples, 0));
+    put(images.halfB, pixel, unit * halfMean(pixel, samples, 1));
   }
 }
 
@@ -231,7 +232,7 @@ PathTraceStatistics tracePaths(const Frame& frame, const View& view, const RaySc
                                const PathTraceSettings& settings, const PathTraceImages& images) {
   const auto run = [&](auto&& tracer) {
     const PathTraceStatistics statistics = tracer.run();
-    tracer.write(images);
+    tracer.write(images, double(frame.preExposure));
     return statistics;
   };
   if (settings.full) return run(Tracer<FullIntegrator>(frame, view, rays, settings));

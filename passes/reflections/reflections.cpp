@@ -16,7 +16,8 @@ void declarePorts(PassDeclaration& d) {
   d.view();
   d.input("mirrors", image2D(VK_FORMAT_R32G32B32A32_UINT), read,
           "pixels that reflect in a narrow lobe (pass mirrors)");
-  d.output("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("mirrors"), heightOf("mirrors")), write,
+  d.output("samples",
+           ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("mirrors"), heightOf("mirrors"))), write,
            "rgb: mean indirect light under the lobe, W/(sr m^2), at one pixel of each block of 2 x 2; a: "
            "code of that pixel as in pass near-field, negative where it does not reflect, for pass "
            "temporal-accumulation");

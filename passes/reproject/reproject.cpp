@@ -37,11 +37,12 @@ class Reproject : public Pass {
             "rgb: the part of it that comes from nearby surfaces (pass near-field), to warp on its own for "
             "pass near-field-pixels")
         .makeOptional();
-    d.output("irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height),
+    d.output("irradiance", ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height)),
              Usage::StorageRead | Usage::StorageWrite,
              "rgb: warped irradiance; a: 1 where it has a source, 0.5 where it was filled from nearby "
              "pixels, 0 where there is neither and in the background");
-    d.output("near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::StorageWrite,
+    d.output("near_field", ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height)),
+             Usage::StorageWrite,
              "rgb: warped `source_near_field`; a: 1 where it has a source, else 0; undefined if nothing is "
              "wired there");
     const SizeExpr blocks =

@@ -55,11 +55,11 @@ class TemporalAccumulation : public Pass {
     d.input("tiles", image2D(VK_FORMAT_R8_UNORM), Usage::StorageRead,
             "tiles with samples (pass mirrors), outside which the mean is 0; if not wired, all are drawn")
         .makeOptional();
-    d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
+    d.output("mean", ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height)), Usage::ColorAttachment,
              "rgb: mean of the samples, in their unit; a: number of samples in it");
     d.output("gloss_mean",
-             image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(wired("gloss") * width, 1),
-                     max(wired("gloss") * height, 1)),
+             ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(wired("gloss") * width, 1),
+                             max(wired("gloss") * height, 1))),
              Usage::ColorAttachment,
              "rgb: mean of `gloss`, in its unit; a: as in `mean`; a single undefined texel if that is not "
              "wired");

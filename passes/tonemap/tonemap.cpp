@@ -34,7 +34,8 @@ class Tonemap : public Pass {
         .define("REINHARD", is("operator", "reinhard"))
         .define("AGX", is("operator", "agx"))
         .define("ADAPTED", wired("adapted"))
-        .constant("sceneExposure", [](const RecordContext& ctx) { return ctx.frame().exposure; });
+        .constant("sceneExposure", [](const RecordContext& ctx) { return ctx.frame().storedExposure(); })
+        .constant("preExposure", [](const RecordContext& ctx) { return ctx.frame().preExposure; });
     return d;
   }
 };

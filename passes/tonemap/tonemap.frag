@@ -10,7 +10,8 @@ layout(std430) buffer Counters { uint value[]; } counters;
 
 layout(push_constant) uniform Constants {
   float exposure;  // 0 if none is given
-  float sceneExposure;
+  float sceneExposure;  // factor on light as it is stored, as in `adapted`
+  float preExposure;
 #if AGX
   float contrast, saturation;
 #endif
@@ -52,7 +53,7 @@ void main() {
 #else
   float own = sceneExposure;
 #endif
-  x = clamp(x * (exposure > 0.0 ? exposure : own), 0.0, 1e30);
+  x = clamp(x * (exposure > 0.0 ? exposure / preExposure : own), 0.0, 1e30);
 #if REINHARD
   x /= 1.0 + dot(x, vec3(0.2126, 0.7152, 0.0722));
 #endif

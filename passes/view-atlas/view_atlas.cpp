@@ -18,8 +18,8 @@ class ViewAtlas : public Pass {
     const SizeExpr maps = ceilDiv(widthOf("atlas"), heightOf("atlas")) * layersOf("atlas");
     d.output(
         "image",
-        image2D(VK_FORMAT_R16G16B16A16_SFLOAT, parameter("columns") * parameter("tile"),
-                ceilDiv(maps, parameter("columns")) * parameter("tile")),
+        ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, parameter("columns") * parameter("tile"),
+                        ceilDiv(maps, parameter("columns")) * parameter("tile"))),
         Usage::StorageWrite,
         "grey: brighter for nearer surfaces, for pass `tonemap` at the scene's exposure; blue: no hit; a: 1");
     d.parameter("columns", integer(32, 1, 256), "maps per row");

@@ -19,8 +19,8 @@ class ViewVoxels : public Pass {
     d.input("weights", voxelWeightBuffer(), Usage::TexelRead,
             "foveated weight of each side, for show `weight`")
         .makeOptional();
-    d.output("image", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, viewWidth(), viewHeight()), Usage::StorageWrite,
-             "rgb: colours for pass `tonemap` at the scene's exposure; a: 1");
+    d.output("image", ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, viewWidth(), viewHeight())),
+             Usage::StorageWrite, "rgb: colours for pass `tonemap` at the scene's exposure; a: 1");
     d.parameter("show", choice("albedo", {"albedo", "radiance", "weight", "normal"}),
                 "quantity to show: reflectance, outgoing radiance, foveated weight (violet 0, yellow 1) or "
                 "normal (0.5 + 0.5 n)");

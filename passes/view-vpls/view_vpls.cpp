@@ -29,8 +29,8 @@ class ViewVpls : public Pass {
     d.input("picture", image2D(), Usage::Sampled,
             "rgb: radiance over which the VPLs are drawn; black if not wired")
         .makeOptional();
-    d.output("image", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, viewWidth(), viewHeight()), Usage::StorageWrite,
-             "rgb: colours for pass `tonemap` at the scene's exposure; a: 1");
+    d.output("image", ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, viewWidth(), viewHeight())),
+             Usage::StorageWrite, "rgb: colours for pass `tonemap` at the scene's exposure; a: 1");
     d.scratch("keys", buffer("uint", 4, viewWidth() * viewHeight()),
               Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
               "key of the nearest VPL at each pixel");

@@ -180,12 +180,11 @@ void OutputFiles::write(File& file, const graph::FrameResult& frame, image::Meta
   metadata["frame"] = std::to_string(frame.frame);
   std::vector<image::Layer> layers;
   for (const auto& [name, output] : frame.outputs) {
-    if (allLayers) {
-      if (std::find(layers_.begin(), layers_.end(), name) != layers_.end())
-        layers.push_back({name, withoutAlpha(session::toImage(output))});
-    } else if (name == file.shown()) {
-      layers.push_back({content == Content::AllFloat ? name : "", withoutAlpha(session::toImage(output))});
-    }
+    const bool shown =
+        allLayers ? std::find(layers_.begin(), layers_.end(), name) != layers_.end() : name == file.shown();
+    if (!shown) continue;
+    layers.push_back({content == Content::AllFloat ? name : "", withoutAlpha(session::toImage(output))});
+    if (output.beyondRange > 0) beyondRange_[name] = std::max(beyondRange_[name], output.beyondRange);
   }
   if (overlay_ && content == Content::Display && file.output.empty())
     for (image::Layer& layer : layers) overlay_(layer.image, frame.frame);

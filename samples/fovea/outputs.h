@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -41,6 +42,8 @@ class OutputFiles {
   void writeFrame(const graph::FrameResult& frame, const image::Metadata& metadata);
   // Writes all other files, which show the last frame.
   void writeLast(const graph::FrameResult& frame, const image::Metadata& metadata);
+  // The most pixels of a frame whose light passes could not store, by the output that shows them.
+  const std::map<std::string, uint64_t>& beyondRange() const { return beyondRange_; }
   // Names of the files written, for the report: "ir.png", "out_0000.exr ... out_0041.exr".
   std::vector<std::string> written() const;
 
@@ -63,6 +66,7 @@ class OutputFiles {
   std::vector<File> files_;
   std::vector<std::string> layers_;  // layers of an EXR file that shows every output
   Overlay overlay_;
+  std::map<std::string, uint64_t> beyondRange_;
 };
 
 }  // namespace fovea::cli

@@ -12,6 +12,7 @@
 #include "framework/image/overlay.h"
 #include "framework/scene/fovea.h"
 #include "framework/scene/frame.h"
+#include "framework/scene/lights.h"
 #include "framework/scene/load.h"
 #include "framework/scene/motion/motion.h"
 #include "framework/scene/scene.h"
@@ -69,6 +70,7 @@ class Render {
   void take(graph::FrameResult result);
   void takeFinished();
   void writeResults();
+  void warnOfLightBeyondRange() const;
   void report() const;
   void submit(uint64_t index, bool readOutputs);
   void showFovea();
@@ -293,6 +295,19 @@ void Render::writeResults() {
   }
 }
 
+void Render::warnOfLightBeyondRange() const {
+  Diagnostics warnings;
+  for (const auto& [output, pixels] : outputs_->beyondRange())
+    warnings.warning(
+        {}, output,
+        fmt::format(
+            "the light of {} pixels is too bright to be stored or no number; with the scene's exposure "
+            "{:.3g}, half floats end at a radiance of {:.3g}",
+            pixels, scene_.exposure, 65504 / scene::preExposure(scene_)),
+        "give the scene file an exposure that suits its light");
+  printWarnings(warnings);
+}
+
 void Render::report() const {
   if (options_.quiet) return;
   std::printf("%s on %s, %ux%u, seed %u\n%s\n\n%s\n", info_.graph.c_str(), info_.scene.c_str(), size_.x,
@@ -313,6 +328,7 @@ ExitCode Render::run() {
   buildExecutor();
   renderFrames();
   writeResults();
+  warnOfLightBeyondRange();
   report();
   const std::vector<std::string> validation = device_->validationMessages();
   if (!validation.empty())

@@ -161,7 +161,7 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
   vec3 emission = vec3(texelOf(sceneMaterials, first + 1));
   if (emission != vec3(0.0))
     emission *= vec3(textureAt(first + kEmissionTexture, at));
-  if (factors.w > 0.0) return FullSurface(vec3(0.0), Gloss(vec3(0.0), 0.0, 1.0, 0.0, 0.0), color);
+  if (factors.w > 0.0) return FullSurface(vec3(0.0), Gloss(vec3(0.0), 0.0, 1.0, 0.0, 0.0), factors.w * color);
   return FullSurface(albedo, g, emission);
 }
 

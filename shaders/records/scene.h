@@ -15,9 +15,11 @@ struct FrameBlock {
   uint staticTriangleCount SHARED_ZERO;
   uint vertexCount SHARED_ZERO;
   float time SHARED_ZERO;      // s
-  float exposure SHARED_ZERO;  // factor on radiance before the display curve
+  float exposure SHARED_ZERO;  // factor on stored light before the display curve
   vec3 boundsMin SHARED_ZERO;  // world space, m
-  float unused0 SHARED_ZERO;
+  // Factor from light in units of the scene, such as W/(sr m^2), to light as passes store it. What this block, lights,
+  // materials, emitters and the environment map hold is multiplied by it already.
+  float preExposure SHARED_ZERO;
   vec3 boundsMax SHARED_ZERO;
   float unused1 SHARED_ZERO;
   vec3 environment SHARED_ZERO;          // radiance of the background without an environment map, W/(sr m^2)
@@ -156,7 +158,7 @@ struct SurfaceRecord {
   float roughness SHARED_ZERO;  // perceptual
   float normalScale SHARED_ZERO;
   float transmission SHARED_ZERO;
-  float unlit SHARED_ZERO;  // 1: shows its base colour
+  float unlit SHARED_ZERO;  // above 0: shows its base colour, times this
   float clearcoat SHARED_ZERO;
   float clearcoatRoughness SHARED_ZERO;
   float unused0 SHARED_ZERO;

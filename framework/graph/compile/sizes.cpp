@@ -180,6 +180,7 @@ bool evaluateResource(Sizes& sizes, uint32_t p, const PortSpec& spec, const Memb
   desc.format = from.format;
   desc.volume = from.volume;
   desc.array = from.array;
+  desc.light = from.light;
   desc.stride = from.stride;
   bool good = true;
   const auto evaluateInto = [&]<class T>(T& out, const SizeExpr& size, const char* what, int64_t limit) {

@@ -245,6 +245,11 @@ ResourceSpec image2D(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr 
 
 ResourceSpec image2D(VkFormat format) { return image2D(format, viewWidth(), viewHeight()); }
 
+ResourceSpec ofLight(ResourceSpec image, uint32_t power) {
+  image.light = power;
+  return image;
+}
+
 ResourceSpec image2DArray(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr layers) {
   ResourceSpec spec = image2D(format, std::move(width), std::move(height));
   spec.array = true;

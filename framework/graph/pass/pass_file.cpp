@@ -179,6 +179,7 @@ class Reader {
                  expressionAt(reader, "count", 1));
     } else {
       r.format = readFormat(reader);
+      r.light = reader.boolean("light", false) ? 1 : 0;
       r.volume = reader.has("depth");
       r.array = reader.has("layers");
       r.width = expressionAt(reader, "width", viewWidth());

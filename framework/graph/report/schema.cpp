@@ -208,12 +208,16 @@ Json resourceProperties() {
   Json formats = Json::array();
   for (const gpu::FormatInfo& info : gpu::formats()) formats.push_back(info.name);
   const Json expression = {{"$ref", "#/definitions/expression"}};
-  Json properties{{"doc", {{"type", "string"}}},
-                  {"format", {{"enum", std::move(formats)}}},
-                  {"element", described("element type of a buffer", {{"type", "string"}})},
-                  {"stride", described("bytes of an element", {{"type", "integer"}, {"minimum", 1}})},
-                  {"usage", described("ways to use it, instead of those that follow from the steps",
-                                      {{"type", "array"}, {"items", {{"type", "string"}}}})}};
+  Json properties{
+      {"doc", {{"type", "string"}}},
+      {"format", {{"enum", std::move(formats)}}},
+      {"light", described("of an output: its rgb is light, such as radiance, relative to frame.preExposure; "
+                          "it is read back in the units of the scene",
+                          {{"type", "boolean"}})},
+      {"element", described("element type of a buffer", {{"type", "string"}})},
+      {"stride", described("bytes of an element", {{"type", "integer"}, {"minimum", 1}})},
+      {"usage", described("ways to use it, instead of those that follow from the steps",
+                          {{"type", "array"}, {"items", {{"type", "string"}}}})}};
   for (const char* key : {"width", "height", "depth", "layers", "mips", "count"})
     properties[key] = expression;
   return properties;

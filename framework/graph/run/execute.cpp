@@ -348,6 +348,7 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs, bool observe)
   slot.observeTimes.clear();
   slot.number = e.frameCount;
   slot.frame = frame.index;
+  slot.preExposure = frame.preExposure;
   slot.submitted = start;
   e.state.slot = slotIndex;
   e.state.parity = static_cast<uint32_t>(e.frameCount & 1);

@@ -1,10 +1,14 @@
 #include "framework/graph/run/frame_slot.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
+#include <span>
 
 #include "fovea/error.h"
 #include "framework/gpu/barrier.h"
+#include "framework/gpu/format.h"
 
 namespace fovea::graph {
 namespace {
@@ -25,6 +29,34 @@ StepTiming& stepTiming(std::vector<StepTiming>& steps, const std::string& name) 
   for (StepTiming& step : steps)
     if (step.name == name) return step;
   return steps.emplace_back(StepTiming{name, 0});
+}
+
+constexpr float kGreatestHalf = 65504;
+
+// What was copied of a resource. Light leaves the units in which passes store it.
+OutputData readBack(const ResourceDesc& desc, const gpu::Buffer& copied, float preExposure) {
+  OutputData data;
+  data.desc = desc;
+  data.bytes.resize(resourceBytes(desc));
+  std::memcpy(data.bytes.data(), copied.mapped(), data.bytes.size());
+  if (desc.light == 0) return data;
+  std::vector<float> values = gpu::texelsToFloats(desc.format, data.bytes);
+  const uint32_t channels = gpu::formatInfo(desc.format).channels;
+  const float unit = std::pow(preExposure, -float(desc.light));
+  const bool half = gpu::formatInfo(desc.format).bytesPerTexel / channels == 2;
+  const float greatest = half ? kGreatestHalf : std::numeric_limits<float>::max();
+  const uint32_t colors = std::min(channels, 3u);
+  for (size_t texel = 0; texel < values.size(); texel += channels) {
+    const std::span<float> light(&values[texel], colors);
+    // Devices store what is too bright as the greatest number or as infinity.
+    data.beyondRange += !std::ranges::all_of(light, [&](float v) { return v < greatest; });
+    for (float& v : light) v *= unit;
+  }
+  data.desc.light = 0;
+  data.desc.format = gpu::floatFormat(channels);
+  const auto bytes = std::as_bytes(std::span(values));
+  data.bytes.assign(bytes.begin(), bytes.end());
+  return data;
 }
 
 }  // namespace
@@ -123,19 +155,12 @@ FrameResult FrameSlot::result(std::span<const double> timestamps, const PassInst
   }
   if (readOutputs) {
     for (const Output& output : outputs) {
-      OutputData& data = result.outputs[output.name];
-      data.desc = state.plan->graph->resources[output.resource].desc;
-      data.bytes.resize(resourceBytes(data.desc));
-      std::memcpy(data.bytes.data(), output.buffer.mapped(), data.bytes.size());
+      const ResourceDesc& desc = state.plan->graph->resources[output.resource].desc;
+      result.outputs[output.name] = readBack(desc, output.buffer, preExposure);
     }
   }
   if (observe) {
-    for (const Observed& o : observed) {
-      OutputData& data = result.outputs[o.what.name];
-      data.desc = o.desc;
-      data.bytes.resize(resourceBytes(data.desc));
-      std::memcpy(data.bytes.data(), o.buffer.mapped(), data.bytes.size());
-    }
+    for (const Observed& o : observed) result.outputs[o.what.name] = readBack(o.desc, o.buffer, preExposure);
   }
   return result;
 }

@@ -55,8 +55,9 @@ struct FrameSlot {
       observeTimes;  // indices of timestamps before and after each copy of an observed resource
   std::vector<RecordedPass> passes;
   bool busy = false, readOutputs = false, observe = false, moves = false;
-  uint64_t number = 0;  // number of the frame since the executor was created
-  uint64_t frame = 0;   // Frame::index
+  uint64_t number = 0;    // number of the frame since the executor was created
+  uint64_t frame = 0;     // Frame::index
+  float preExposure = 1;  // Frame::preExposure
   double cpuMs = 0, animateCpuMs = 0;
   uint32_t animateEnd = 0;  // index of the timestamp after the animation of vertices
   Clock::time_point submitted;

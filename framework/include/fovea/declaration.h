@@ -160,6 +160,9 @@ struct ResourceSpec {
   bool volume = false;  // 3D image
   bool array = false;   // array image, even with a single layer
   SizeExpr width, height, depth, layers, mips;
+  // Images of outputs: with which power of light their rgb grows, 1 for radiance, 2 for its variance. They hold it times
+  // that power of Frame::preExposure, and what is read back of them is in the units of the scene, as 32-bit floats.
+  uint32_t light = 0;
   // Buffers of `count` elements of `stride` bytes each. Ports are matched by the name of the element type.
   std::string element;
   uint32_t stride = 0;
@@ -169,6 +172,8 @@ struct ResourceSpec {
 ResourceSpec image2D(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr mips = 1);
 // For inputs. An output declared this way has the size of the view.
 ResourceSpec image2D(VkFormat format = VK_FORMAT_UNDEFINED);
+// Marks an image as one of light, see ResourceSpec::light.
+ResourceSpec ofLight(ResourceSpec image, uint32_t power = 1);
 ResourceSpec image2DArray(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr layers);
 ResourceSpec image3D(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr depth, SizeExpr mips = 1);
 ResourceSpec buffer(std::string element, uint32_t stride, SizeExpr count = 1);

@@ -22,6 +22,7 @@ struct ResourceDesc {
   VkFormat format = VK_FORMAT_UNDEFINED;
   bool volume = false, array = false;
   uint32_t width = 1, height = 1, depth = 1, layers = 1, mips = 1;
+  uint32_t light = 0;  // see ResourceSpec::light; 0 in what is read back
   uint32_t stride = 0;
   uint64_t count = 0;   // a buffer has stride * count bytes
   std::string element;  // element type of a buffer
@@ -41,9 +42,13 @@ struct PassTiming {
   std::vector<StepTiming> steps;  // those that ran, in the order of their first run; none for a host pass
 };
 
+// What is read back. Light is in the units of the scene, such as W/(sr m^2), as 32-bit floats whatever format passes
+// store it in (ResourceSpec::light).
 struct OutputData {
   ResourceDesc desc;
   std::vector<std::byte> bytes;  // tightly packed, layer after layer, then the further mips
+  uint64_t beyondRange =
+      0;  // texels whose light is no number, or too bright for the format in which it is stored
 };
 
 struct FrameResult {

@@ -275,6 +275,9 @@ struct Scene {
   float ipd = 0.064f;        // distance between the eyes (the views "left" and "right"), metres
   std::optional<Lens> lens;  // of these views; without one they have the camera's field of view
   float exposure = 1;        // display = sRGB(exposure * radiance)
+  // Factor on all light as passes store it, so that it fits into half floats; 0 stands for the power of two nearest to
+  // the exposure. It is undone in what is read back from outputs. See scene::preExposure().
+  float preExposure = 0;
   // The background: an environment map, which lights the scene, or else a radiance that is only visible.
   std::shared_ptr<const EnvironmentMap> environmentMap;
   glm::vec3 environment{0};
@@ -408,7 +411,8 @@ struct Frame {
   uint64_t index = 0;  // since the start of the sequence
   double time = 0;     // seconds
   uint32_t seed = 0;
-  float exposure = 1;
+  float exposure = 1;      // factor from radiance to display intensity
+  float preExposure = 1;   // factor from radiance to light as passes store it
   bool cameraCut = false;  // the history of the views is invalid
   float saccade = 0;       // 1 in the frame in which the gaze has jumped, then falling linearly to 0
   std::vector<View> views;
@@ -423,6 +427,8 @@ struct Frame {
   GpuScene* gpu = nullptr;
 
   const View* findView(std::string_view name) const;
+  // Factor from light as passes store it to display intensity: `frame.exposure` in shaders.
+  float storedExposure() const { return exposure / preExposure; }
 };
 
 // ---- Loading ---------------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@
 
 namespace fovea::scene {
 
-gpu::Image environmentImage(gpu::Device& device, const EnvironmentMap* map) {
+gpu::Image environmentImage(gpu::Device& device, const EnvironmentMap* map, float preExposure) {
   gpu::ImageDesc desc;
   desc.name = "environment";
   desc.format = VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -25,7 +25,7 @@ gpu::Image environmentImage(gpu::Device& device, const EnvironmentMap* map) {
                 "scale the map down");
   std::vector<glm::vec4> texels;
   if (map)
-    for (const glm::vec3& t : map->texels()) texels.emplace_back(t, 1);
+    for (const glm::vec3& t : map->texels()) texels.emplace_back(t * preExposure, 1);
   else
     texels.emplace_back(0);
   gpu::Image image(device, desc);

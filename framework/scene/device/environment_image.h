@@ -9,6 +9,6 @@ namespace fovea::scene {
 // 32-bit floats, as the sun in a map may be brighter than halves can say; a single black texel without a map. In
 // VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL. Throws Error(BadInput) if the map is too large for the device, and
 // Error(OutOfMemory).
-gpu::Image environmentImage(gpu::Device& device, const EnvironmentMap* map);
+gpu::Image environmentImage(gpu::Device& device, const EnvironmentMap* map, float preExposure);
 
 }  // namespace fovea::scene

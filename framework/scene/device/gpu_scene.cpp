@@ -16,6 +16,7 @@
 #include "framework/scene/device/rays/emitter_tables.h"
 #include "framework/scene/device/rays/ray_tables.h"
 #include "framework/scene/host/host_scene.h"
+#include "framework/scene/lights.h"
 #include "framework/scene/tables/blocks.h"
 #include "framework/scene/tables/material_table.h"
 
@@ -112,9 +113,9 @@ struct GpuScene::Impl {
         rayTables(d, scene, g, rays_.device),
         emitterTables(d, scene, g, fullMaterials_, rays_.device),
         textures(d, scene, fullMaterials_),
-        environmentMap(environmentImage(d, scene.environmentMap.get())),
+        environmentMap(environmentImage(d, scene.environmentMap.get(), preExposure(scene))),
         runs(fovea::scene::drawRuns(scene, g, fullMaterials_)) {
-    lightRecords(scene.lights);  // throws if there are too many
+    lightRecords(scene.lights, preExposure(scene));  // throws if there are too many
     indices = makeBuffer(device, "scene indices", indexList(g),
                          VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     static_assert(sizeof(Triangle) == 16);
@@ -319,7 +320,7 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
     throw Error(ExitCode::Internal, "no slot " + std::to_string(slot) + " of the scene");
   Impl& s = *impl_;
   impl_->store(slot, 0, frameBlock(s.block, frame));
-  const std::vector<LightRecord> lights = lightRecords(frame.lights);
+  const std::vector<LightRecord> lights = lightRecords(frame.lights, frame.preExposure);
   std::memcpy(static_cast<std::byte*>(s.uniforms.mapped()) + slot * s.slotStride + s.lightOffset,
               lights.data(), lights.size() * sizeof(LightRecord));
   for (size_t i = 0; i < frame.views.size(); ++i)

@@ -61,7 +61,7 @@ class Parser {
     if (const Value* f = r.object("floor")) floor(*f);
     scene_.fullMaterials = r.choice("materials", "diffuse", {"diffuse", "full"}) == "full";
     hasExposure_ = r.has("exposure");
-    scene_.exposure = float(r.number("exposure", 1.0, 1e-6, 1e6));
+    scene_.exposure = float(r.number("exposure", 1.0, 1e-12, 1e12));
     hasEnvironment_ = r.has("environment");
     if (const Value* e = r.find("environment"); e && e->isObject())
       environment(*e);

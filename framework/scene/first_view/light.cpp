@@ -135,7 +135,8 @@ float firstExposure(const Scene& scene, const Geometry& geometry) {
   // The greatest exposure with at most this mean display value and this share of clipped pixels.
   const auto greatest = [&](float mean, float clipped) {
     const float bright = brightest(pixels[size_t(float(pixels.size()) * (1 - clipped))]);
-    float low = 1e-6f, high = bright > 0 ? 1 / bright : 0;
+    const float most = bright > 0 ? 1 / bright : 0;
+    float low = 1e-6f * most, high = most;
     if (display(high) > mean)
       for (int i = 0; i < 30; ++i) {
         const float middle = std::sqrt(low * high);

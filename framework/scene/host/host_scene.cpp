@@ -38,7 +38,7 @@ HostScene::HostScene(const Scene& scene, const Geometry& geometry, bool fullMate
 void HostScene::update(const Frame& frame) {
   geometry_ = frame.geometry;
   frame_ = frameBlock(still_, frame);
-  lights_ = lightRecords(frame.lights);
+  lights_ = lightRecords(frame.lights, frame.preExposure);
   views_.clear();
   for (const View& view : frame.views) views_.push_back(viewBlock(view));
   if (emittersMove_) emitters_ = emitterTable(scene_, *geometry_, fullMaterials_);
@@ -68,7 +68,7 @@ glm::ivec2 HostScene::environmentSize() const {
 
 glm::vec3 HostScene::environmentTexel(glm::ivec2 p) const {
   const EnvironmentMap& map = *scene_.environmentMap;
-  return map.texels()[size_t(p.y) * map.width() + size_t(p.x)];
+  return map.texels()[size_t(p.y) * map.width() + size_t(p.x)] * frame_.preExposure;
 }
 
 }  // namespace fovea::scene

@@ -36,7 +36,7 @@ Emitters::Emitters(const Frame& frame, bool fullMaterials) : frame_(frame) {
                     &c = g.positions[g.triangles[t].v[2]];
     const glm::vec3 normal = glm::cross(b - a, c - a);
     const float twice = glm::length(normal);
-    const double radiance = estimatedRadiance(frame, t, materials[index]);
+    const double radiance = estimatedRadiance(frame, t, materials[index]) * double(frame.preExposure);
     const double power = radiance * 0.5 * double(twice);
     if (!(radiance > 0) || !std::isfinite(power)) continue;
     const glm::vec3 centre = (a + b + c) / 3.0f, p = a - centre, q = b - centre, r = c - centre;

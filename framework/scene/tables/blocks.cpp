@@ -18,14 +18,14 @@ TransformRows rowsOf(const glm::mat4& m) {
   return {rows[0], rows[1], rows[2]};
 }
 
-LightRecord lightRecord(const Light& light, uint32_t firstShadowLayer) {
+LightRecord lightRecord(const Light& light, float preExposure, uint32_t firstShadowLayer) {
   const SpotCone cone = spotCone(light);
   LightRecord record;
   record.position = light.position;
   record.type = uint32_t(light.type);
   record.direction = light.direction;
   record.range = light.range;
-  record.intensity = light.color * light.intensity;
+  record.intensity = light.color * (light.intensity * preExposure);
   record.firstShadowLayer = firstShadowLayer;
   record.cosInner = cone.cosInner;
   record.cosOuter = cone.cosOuter;
@@ -59,7 +59,7 @@ FrameBlock sceneBlock(const Scene& scene, const Geometry& geometry, const FullMa
   block.staticTriangleCount = geometry.staticTriangles;
   block.vertexCount = uint32_t(geometry.positions.size());
   if (!geometry.empty()) block.boundsMin = geometry.boundsMin, block.boundsMax = geometry.boundsMax;
-  block.environment = scene.environment;
+  block.environment = scene.environment * preExposure(scene);
   block.environmentTurn = scene.environmentMap ? scene.environmentMap->turn() : 0;
   block.firstMovingVertex = geometry.staticVertices();
   block.firstMovingTriangle = geometry.light().firstMoving;
@@ -76,7 +76,8 @@ FrameBlock frameBlock(FrameBlock block, const Frame& frame) {
   block.seed = frame.seed;
   block.lightCount = uint32_t(frame.lights.size());
   block.time = float(frame.time);
-  block.exposure = frame.exposure;
+  block.exposure = frame.storedExposure();
+  block.preExposure = frame.preExposure;
   return block;
 }
 
@@ -95,13 +96,13 @@ ViewBlock viewBlock(const View& v) {
   return block;
 }
 
-std::vector<LightRecord> lightRecords(std::span<const Light> lights) {
+std::vector<LightRecord> lightRecords(std::span<const Light> lights, float preExposure) {
   checkLights(lights);
   std::vector<LightRecord> records;
   records.reserve(lights.size());
   uint32_t layer = 0;
   for (const Light& light : lights) {
-    records.push_back(lightRecord(light, layer));
+    records.push_back(lightRecord(light, preExposure, layer));
     layer += shadowLayers(light);
   }
   return records;

@@ -16,7 +16,7 @@ FrameBlock sceneBlock(const Scene& scene, const Geometry& geometry, const FullMa
 FrameBlock frameBlock(FrameBlock scene, const Frame& frame);
 ViewBlock viewBlock(const View& view);
 // Throws Error(BadInput) if there are more than kMaxLights lights, or if they need more than kMaxShadowLayers shadow maps.
-std::vector<LightRecord> lightRecords(std::span<const Light> lights);
+std::vector<LightRecord> lightRecords(std::span<const Light> lights, float preExposure);
 ObjectRecord objectRecord(const ObjectTransform& object);
 
 // Throws Error(BadInput) that says how many `what` the scene has, and how many are supported.

@@ -6,6 +6,7 @@
 
 #include "framework/scene/environment/environment_map.h"
 #include "framework/scene/frame.h"
+#include "framework/scene/lights.h"
 #include "framework/scene/rays/emitters.h"
 #include "shaders/records/emitters.h"
 
@@ -29,6 +30,7 @@ std::vector<glm::uvec4> emitterTable(const Scene& scene, const Geometry& geometr
   Frame frame;
   frame.scene = &scene;
   frame.geometry = &geometry;
+  frame.preExposure = preExposure(scene);
   const Emitters emitters(frame, fullMaterials);
   const std::vector<EmitterRecord> records = emitters.records();
   EmitterHeader header;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "framework/scene/lights.h"
 #include "framework/scene/tables/albedos.h"
 
 namespace fovea::scene {
@@ -22,7 +23,7 @@ float normalReflectance(float ior) {
   return ior == 0 ? 1 : root * root;
 }
 
-SurfaceRecord surfaceEntry(const Material& m,
+SurfaceRecord surfaceEntry(const Material& m, float preExposure,
                            const std::function<TextureRecord(const TextureUse&)>& textureEntry) {
   SurfaceRecord record;
   record.baseColor = glm::vec3(m.baseColor);
@@ -32,7 +33,7 @@ SurfaceRecord surfaceEntry(const Material& m,
   record.roughness = m.roughness;
   record.normalScale = m.normalScale;
   record.transmission = m.transmission;
-  record.unlit = float(m.unlit);
+  record.unlit = m.unlit ? preExposure : 0;
   record.clearcoat = m.clearcoat;
   record.clearcoatRoughness = m.clearcoatRoughness;
   record.metallicRoughnessTexture = textureEntry(m.metallicRoughnessTexture);
@@ -62,7 +63,7 @@ FullMaterials appendFullMaterials(const Scene& scene, const Geometry& geometry,
   FullMaterials first;
   first.transparent = std::ranges::any_of(scene.materials, letsLightThrough);
   first.firstSurface = uint32_t(texels.size());
-  for (const Material& m : scene.materials) append(surfaceEntry(m, textureEntry), texels);
+  for (const Material& m : scene.materials) append(surfaceEntry(m, preExposure(scene), textureEntry), texels);
   first.firstAlbedo = uint32_t(texels.size());
   texels.insert(texels.end(), lobeAlbedos().begin(), lobeAlbedos().end());
   if (!geometry.tangents.empty()) {

@@ -1,5 +1,6 @@
 #include "framework/scene/tables/material_table.h"
 
+#include "framework/scene/lights.h"
 #include "shaders/records/scene.h"
 
 namespace fovea::scene {
@@ -45,7 +46,7 @@ MaterialTable materialTable(const Scene& scene, const Geometry& geometry, bool f
     record = {};
     record.baseColor = bouncedColor(m, fullMaterials);
     record.alpha = m.baseColor.a;
-    record.emission = fullMaterials && m.unlit ? glm::vec3(0) : m.emission;
+    record.emission = fullMaterials && m.unlit ? glm::vec3(0) : m.emission * preExposure(scene);
     const bool transmits = fullMaterials && m.transmission > 0;
     record.alphaCutoff = m.masked ? m.alphaCutoff : transmits ? -1.0f : 0.0f;
     record.colorTexture = texture(m.baseColorTexture);
