@@ -22,8 +22,9 @@ constexpr double kRate = 42;  // Hz
 constexpr uint32_t kSide = 48;
 
 // Bounds of the excess of change, see blockExcess(), x 1e-3: the median and the maximum over all pairs of frames, and
-// the maximum over the pairs in which the gaze jumps. They are a third above what seeds 1 to 3 show for `ours`, and
-// half above what seed 1 shows for `foveal`. With a fifth of the VPLs and a 450th of the pixels, everything flickers
+// the maximum over the pairs in which the gaze jumps. They are a third above the most that a few seeds show: 1 to 3
+// for `ours`, 1 to 5 for `foveal` in the room, and 1 and 2 in the other scenes. The traced light has so many paths that
+// its own noise adds little. With a fifth of the VPLs and a 450th of the pixels, everything flickers
 // more than in a picture of full size; and `ours`, as in the paper, replaces as many VPLs at once as the gaze asks for.
 struct Case {
   const char* scene;
@@ -32,10 +33,10 @@ struct Case {
 };
 const Case kCase{"cornellbox_moving", "foveal", 0.02, 0.13, 0.075};
 const Case kLongCases[] = {{"cornellbox_moving", "ours", 0.13, 2.7, 6},
-                           {"atrium", "foveal", 0.07, 0.55, 0.15},
-                           {"balcony", "foveal", 0.055, 0.2, 0.08},
-                           {"room", "foveal", 0.28, 1.2, 0.55},
-                           {"yard", "foveal", 0.072, 0.24, 0.08}};
+                           {"atrium", "foveal", 0.085, 0.75, 0.23},
+                           {"balcony", "foveal", 0.058, 0.2, 0.08},
+                           {"room", "foveal", 0.12, 1.65, 0.29},
+                           {"yard", "foveal", 0.058, 0.24, 0.08}};
 
 scene::Frame frameOf(const scene::Scene& s, const scene::Geometry& geometry, uint64_t index) {
   return scene::makeFrame(s, geometry, {kSide, kSide}, kFirst + index, 1, kRate);
@@ -113,7 +114,7 @@ TEST_P(Animation, FlickersNoMoreThanTracedLight) {
   const GraphRun run =
       render(GetParam().graph, s, {"shadow_map_size=1024", "map_size=32", "vpl_count=200", "voxels=64"},
              {"radiance"});
-  const GraphRun truth = render("reference", s, {"spp=32"}, {"radiance", "half_a", "half_b"});
+  const GraphRun truth = render("reference", s, {"spp=256"}, {"radiance", "half_a", "half_b"});
   ASSERT_EQ(run.frames.size(), kFrames);
   const std::vector<bool> jumps = gazeJumps(s);
   std::vector<double> steady;  // excess of each pair of frames
