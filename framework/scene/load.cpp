@@ -11,6 +11,7 @@
 #include "framework/scene/environment/environment_map.h"
 #include "framework/scene/file/scene_file.h"
 #include "framework/scene/first_view/first_view.h"
+#include "framework/scene/origin.h"
 
 namespace fovea::scene {
 namespace fs = std::filesystem;
@@ -146,15 +147,17 @@ glm::quat lookAlong(glm::vec3 direction, glm::vec3 up) {
 void appendModel(Scene& scene, Scene&& model, const Placement& placement) {
   Node root;
   root.name = placement.name;
-  root.translation = placement.translation;
   root.rotation = placement.rotation;
   root.scale = placement.scale;
-  const glm::mat4 world = localTransform(root);
+  root.origin = model.origin;
   const size_t textures = scene.textures.size(), materials = scene.materials.size(),
                meshes = scene.meshes.size(), lights = scene.lights.size(), cameras = scene.cameras.size(),
                skins = scene.skins.size();
   const uint32_t rootIndex = uint32_t(scene.nodes.size());
   scene.nodes.push_back(root);
+  scene.nodes.back().translation =
+      translationFrom(scene, rootIndex, placement.translation, placement.rotation);
+  const glm::mat4 world = localTransform(scene.nodes.back());
   for (Node& n : model.nodes) {
     n.parent = n.parent == kNoIndex ? rootIndex : n.parent + rootIndex + 1;
     n.mesh = shifted(n.mesh, meshes);

@@ -2,14 +2,15 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "fovea/scene.h"
 #include "framework/graph/report/report.h"
 #include "framework/scene/environment/environment_map.h"
+#include "framework/scene/export/bare_model.h"
 #include "framework/scene/load.h"
 #include "framework/scene/motion/animation.h"
+#include "framework/scene/origin.h"
 #include "framework/scene/scene.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
@@ -23,17 +24,26 @@ void line(const char* what, const std::string& value) { fmt::print("{:<10}  {}\n
 
 std::string formatVector(const glm::vec3& v) { return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z); }
 
-std::string formatLight(const scene::Light& light) {
+// In the author's coordinates, with all digits of those that are too large for single precision.
+std::string formatPlace(const Scene& s, const glm::vec3& v) {
+  const glm::dvec3 p = scene::toAuthor(s, v);
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis)
+    text += fmt::format("{}{:.{}g}", axis > 0 ? " " : "", p[axis], s.origin[axis] != 0 ? 12 : 4);
+  return text;
+}
+
+std::string formatLight(const Scene& s, const scene::Light& light) {
   const glm::vec3 strength = light.color * light.intensity;
   switch (light.type) {
     case scene::LightType::Directional:
       return fmt::format("directional, {} lux, towards {}", formatVector(strength),
                          formatVector(light.direction));
     case scene::LightType::Point:
-      return fmt::format("point, {} cd, at {}", formatVector(strength), formatVector(light.position));
+      return fmt::format("point, {} cd, at {}", formatVector(strength), formatPlace(s, light.position));
     case scene::LightType::Spot:
       return fmt::format("spot, {} cd, at {}, towards {}, cone {:.3g} degrees", formatVector(strength),
-                         formatVector(light.position), formatVector(light.direction),
+                         formatPlace(s, light.position), formatVector(light.direction),
                          2 * glm::degrees(light.outerConeAngle));
   }
   return {};
@@ -67,61 +77,7 @@ void printContents(const Scene& s, const scene::Geometry& geometry) {
   line("textures", fmt::format("{} ({})", s.textures.size(), graph::printBytes(textureBytes)));
   if (geometry.empty()) return line("bounds", "none: there is no geometry");
   line("bounds",
-       fmt::format("{} to {} m", formatVector(geometry.boundsMin), formatVector(geometry.boundsMax)));
-}
-
-using Json = nlohmann::ordered_json;
-
-// Five digits, which is more than an eye can tell apart.
-double rounded(float value) { return std::stod(fmt::format("{:.5g}", value)); }
-Json toJson(glm::vec3 v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
-
-// A scene file that shows the same as a model on its own (samples/scenes/README.md).
-Json sceneFileOf(const Scene& s, const std::string& environment) {
-  const scene::Camera& c = s.cameras.at(0);
-  Json file = Json::object();
-  file["models"] = {{{"file", s.source}}};
-  file["camera"] = {{"eye", toJson(c.position)},
-                    {"target", toJson(c.position + c.orientation * glm::vec3(0, 0, -1))},
-                    {"fov_deg", rounded(glm::degrees(c.verticalFov))},
-                    {"near", rounded(c.zNear)}};
-  if (s.assumedFloor) {
-    const scene::Node& floor = s.nodes.back();
-    const uint32_t material = s.meshes[floor.mesh].primitives[0].material;
-    file["floor"] = {{"position", toJson(floor.translation)},
-                     {"radius", rounded(floor.scale.x)},
-                     {"color", toJson(glm::vec3(s.materials[material].baseColor))}};
-  }
-  if (s.assumedLamp) {
-    const scene::Light& lamp = s.lights.back();
-    file["lights"] = {{{"type", "point"},
-                       {"name", lamp.name},
-                       {"intensity", rounded(lamp.intensity)},
-                       {"color", toJson(lamp.color)},
-                       {"position", toJson(lamp.position)}}};
-  }
-  if (s.fullMaterials) file["materials"] = "full";
-  file["exposure"] = rounded(s.exposure);
-  if (s.assumedSky)
-    file["environment"]["sky"] = {{"sun_elevation_deg", rounded(glm::degrees(s.assumedSky->sunElevation))},
-                                  {"sun_azimuth_deg", rounded(glm::degrees(s.assumedSky->sunAzimuth))},
-                                  {"ground", toJson(s.assumedSky->ground)}};
-  else if (s.environmentMap)
-    file["environment"] = {{"file", environment}};
-  else
-    file["environment"] = toJson(s.environment);
-  return file;
-}
-
-void printSceneFile(const Scene& s, const std::string& environment) {
-  fmt::print("\nas a scene file, to be changed:\n{{");
-  const char* before = "\n";
-  const Json file = sceneFileOf(s, environment);
-  for (const auto& [key, value] : file.items()) {
-    fmt::print("{}  \"{}\": {}", before, key, value.dump(-1, ' ', false, Json::error_handler_t::replace));
-    before = ",\n";
-  }
-  fmt::print("\n}}\n");
+       fmt::format("{} to {} m", formatPlace(s, geometry.boundsMin), formatPlace(s, geometry.boundsMax)));
 }
 
 ExitCode info(const std::string& name, const scene::LoadOptions& options) {
@@ -132,10 +88,10 @@ ExitCode info(const std::string& name, const scene::LoadOptions& options) {
   line("scene", s.name);
   if (!s.source.empty()) line("source", s.source);
   printContents(s, geometry);
-  for (const scene::Light& light : s.lights) line("light", formatLight(light));
+  for (const scene::Light& light : s.lights) line("light", formatLight(s, light));
   for (const scene::Camera& c : s.cameras)
     line("camera",
-         fmt::format("at {}, towards {}, {:.3g} degrees high", formatVector(c.position),
+         fmt::format("at {}, towards {}, {:.3g} degrees high", formatPlace(s, c.position),
                      formatVector(c.orientation * glm::vec3(0, 0, -1)), glm::degrees(c.verticalFov)));
   if (!s.cameraPath.empty())
     line("path", fmt::format("{} camera keys over {:.3g} s", s.cameraPath.size(), s.cameraPath.back().time));
@@ -155,7 +111,8 @@ ExitCode info(const std::string& name, const scene::LoadOptions& options) {
   else
     line("sky", formatVector(s.environment) + " W/(sr m^2)");
   line("hash", formatHash(s.hash));
-  if (s.assumed) printSceneFile(s, options.environment);
+  if (s.assumed)
+    fmt::print("\nas a scene file, to be changed:\n{}", scene::bareModelFile(s, options.environment));
   return ExitCode::Ok;
 }
 

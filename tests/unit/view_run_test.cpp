@@ -143,7 +143,7 @@ TEST(ViewMotion, ARecordedCameraIsAMemberOfASceneFile) {
   c.pose = Pose{{1, 2, 3}, 0, 0};
   motion.apply(c);
   for (int i = 0; i < 3; ++i) motion.next(s);
-  const json::Value file = json::parse(motion.cameraKeys(), "camera.json");
+  const json::Value file = json::parse(motion.cameraKeys(s.origin), "camera.json");
   const json::Value* path = file.find("camera")->find("path");
   ASSERT_EQ(path->items.size(), 3u);
   EXPECT_EQ(path->items[2].find("eye")->items[1].real, 2);

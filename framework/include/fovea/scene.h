@@ -1,6 +1,6 @@
 // A scene on the CPU, which loaders produce and all other parts read, and the frames rendered from it. Coordinates are
-// right-handed with Y up, in metres. Colours and reflectances are linear. Light units are those of the glTF extension
-// KHR_lights_punctual.
+// right-handed with Y up, in metres, relative to Scene::origin. Colours and reflectances are linear. Light units are
+// those of the glTF extension KHR_lights_punctual.
 #pragma once
 
 #include <cstdint>
@@ -141,6 +141,9 @@ struct Node {
   bool dynamic = false;          // moves: is an object of its own, drawn and voxelised in every frame
   uint32_t skin = kNoIndex;      // skin of its mesh
   std::vector<float> weights{};  // weights of its mesh's morph targets; empty for those of the mesh
+  // The point of the author's space of the node that is 0 here, as Scene::origin is that of the world: not 0 where the
+  // author's numbers are too large for single precision (framework/scene/origin.h).
+  glm::dvec3 origin{0};
 };
 
 enum class LightType : uint32_t { Directional = 0, Point = 1, Spot = 2 };
@@ -259,6 +262,9 @@ inline constexpr double kGazeGap = 0.05;  // s; exceeded by slow trackers, pause
 
 struct Scene {
   std::string name, source;  // source: scene file or model
+  // The point of the author's world space that is 0 in everything below: 0 unless the scene lies so far from there that
+  // single precision would not do (framework/scene/origin.h).
+  glm::dvec3 origin{0};
   std::vector<Texture> textures;
   std::vector<Material> materials;  // at least one
   std::vector<Mesh> meshes;

@@ -32,6 +32,10 @@ double shortest(float value) {
   return out;
 }
 
+glm::dvec3 authoredPlace(const Scene& scene, const glm::vec3& position) {
+  return scene.origin + glm::dvec3(shortest(position.x), shortest(position.y), shortest(position.z));
+}
+
 void makeFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);

@@ -31,6 +31,9 @@ class UniqueNames {
 // rather than 0.41999998688697815.
 double shortest(float value);
 
+// A position in the author's coordinates, with the fewest digits where the origin of the scene is 0.
+glm::dvec3 authoredPlace(const Scene& scene, const glm::vec3& position);
+
 // Creates the folder if it is missing. Throws Error(CannotWrite).
 void makeFolder(const std::filesystem::path& folder);
 

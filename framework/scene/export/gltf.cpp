@@ -49,6 +49,7 @@ class GltfWriter {
     cameras();
     skins();
     animations();
+    origin();
     root_["scenes"][0]["nodes"] = roots_;
     finish();
     const std::string environment = scene_.environmentMap ? name_ + "_environment.exr" : "";
@@ -344,6 +345,16 @@ class GltfWriter {
   void addRoot(Json node) {
     roots_.push_back(root_["nodes"].size());
     root_["nodes"].push_back(std::move(node));
+  }
+
+  // Everything in the scene is relative to its origin, which has too many digits for single precision.
+  void origin() {
+    const glm::dvec3& o = scene_.origin;
+    if (o == glm::dvec3(0)) return;
+    const Json node = {
+        {"name", names_.add("origin")}, {"translation", {o.x, o.y, o.z}}, {"children", roots_}};
+    roots_ = Json::array({root_["nodes"].size()});
+    root_["nodes"].push_back(node);
   }
 
   void lights() {

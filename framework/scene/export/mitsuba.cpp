@@ -22,12 +22,12 @@ namespace fs = std::filesystem;
 namespace {
 
 // Mitsuba's cameras and spot lights look along +Z with +X to their left.
-std::string toWorld(const glm::vec3& position, const glm::quat& orientation) {
+std::string toWorld(const glm::vec3& position, const glm::quat& orientation, const std::string& origin) {
   const glm::mat3 axes = glm::mat3_cast(orientation);
   const glm::vec3 left = -axes[0], up = axes[1], forward = -axes[2];
   std::string rows;
   for (int i = 0; i < 3; ++i) rows += fmt::format("{} {} {} {}  ", left[i], up[i], forward[i], position[i]);
-  return "<transform name=\"to_world\"><matrix value=\"" + rows + "0 0 0 1\"/></transform>";
+  return "<transform name=\"to_world\"><matrix value=\"" + rows + "0 0 0 1\"/>" + origin + "</transform>";
 }
 
 std::string escaped(const std::string& text) {
@@ -168,6 +168,7 @@ class MitsubaWriter {
     line(fmt::format("<default name=\"height\" value=\"{}\"/>", options_.size.y));
     line(fmt::format("<default name=\"spp\" value=\"{}\"/>", options_.samples));
     line(fmt::format("<default name=\"depth\" value=\"{}\"/>", options_.depth));
+    origin();
     if (masked) {
       line(
           "<!-- volpath, not path: the latter casts shadows of masked surfaces as if they had no holes, and "
@@ -180,6 +181,22 @@ class MitsubaWriter {
                     masked ? "volpath" : "path"));
   }
 
+  // Mitsuba's usual variants have single precision, in which such a scene can only be rendered near 0.
+  void origin() {
+    const glm::dvec3& o = scene_.origin;
+    if (o == glm::dvec3(0)) return;
+    line(
+        "<!-- The origin of all coordinates below. Set it to 0, 0, 0 (-Dx=0 -Dy=0 -Dz=0) for variants with "
+        "single");
+    line("     precision; the picture stays the same. -->");
+    for (int axis = 0; axis < 3; ++axis)
+      line(fmt::format("<default name=\"{}\" value=\"{}\"/>", "xyz"[axis], o[axis]));
+    origin_ = "<translate x=\"$x\" y=\"$y\" z=\"$z\"/>";
+    warn("origin",
+         "the scene lies so far from 0 that Mitsuba needs a variant with double precision, or the parameters "
+         "x, y and z set to 0");
+  }
+
   void camera() {
     const Camera c = cameraAt(scene_, options_.time);
     const float diagonal = geometry_.empty() ? 1 : glm::length(geometry_.boundsMax - geometry_.boundsMin);
@@ -190,7 +207,7 @@ class MitsubaWriter {
     line(fmt::format("  <float name=\"fov\" value=\"{}\"/>", glm::degrees(double(c.verticalFov))));
     line(fmt::format("  <float name=\"near_clip\" value=\"{}\"/><float name=\"far_clip\" value=\"{}\"/>",
                      c.zNear, far));
-    line("  " + toWorld(c.position, c.orientation));
+    line("  " + toWorld(c.position, c.orientation, origin_));
     line("  <sampler type=\"independent\"><integer name=\"sample_count\" value=\"$spp\"/></sampler>");
     line(
         "  <film type=\"hdrfilm\"><integer name=\"width\" value=\"$width\"/>"
@@ -214,8 +231,7 @@ class MitsubaWriter {
       line(fmt::format("<emitter type=\"directional\"><vector name=\"direction\" value=\"{}\"/>{}</emitter>",
                        triple(light.direction), rgb("irradiance", strength)));
     else if (light.type == LightType::Point)
-      line(fmt::format("<emitter type=\"point\"><point name=\"position\" value=\"{}\"/>{}</emitter>",
-                       triple(light.position), rgb("intensity", strength)));
+      line("<emitter type=\"point\">" + pointAt(light.position) + rgb("intensity", strength) + "</emitter>");
     else
       spot(light, strength);
   }
@@ -249,10 +265,16 @@ class MitsubaWriter {
     line("<emitter type=\"spot\">" + rgb("intensity", strength));
     line(fmt::format("  <float name=\"cutoff_angle\" value=\"{}\"/><float name=\"beam_width\" value=\"{}\"/>",
                      degrees, degrees));
-    line("  " + toWorld(light.position, lookAlong(light.direction, {0, 1, 0})));
+    line("  " + toWorld(light.position, lookAlong(light.direction, {0, 1, 0}), origin_));
     line("  <texture type=\"bitmap\" name=\"texture\"><string name=\"filename\" value=\"" + file +
          "\"/><boolean name=\"raw\" value=\"true\"/><string name=\"wrap_mode\" value=\"clamp\"/></texture>");
     line("</emitter>");
+  }
+
+  std::string pointAt(const glm::vec3& p) const {
+    if (origin_.empty()) return "<point name=\"position\" value=\"" + triple(p) + "\"/>";
+    return fmt::format("<transform name=\"to_world\"><translate x=\"{}\" y=\"{}\" z=\"{}\"/>{}</transform>",
+                       p.x, p.y, p.z, origin_);
   }
 
   // ---- Shapes ----
@@ -284,9 +306,10 @@ class MitsubaWriter {
         names_.add(safeFileName(geometry_.objects[object].name + "_" + scene_.materials[material].name)) +
         ".ply";
     writeText(folder_ / file, mesh.text());
-    line(
-        fmt::format("<shape type=\"ply\"><string name=\"filename\" value=\"{}\"/><ref id=\"m{}\"/>{}</shape>",
-                    file, material, emitter));
+    line(fmt::format(
+        "<shape type=\"ply\"><string name=\"filename\" value=\"{}\"/><ref id=\"m{}\"/>{}{}</shape>", file,
+        material, emitter,
+        origin_.empty() ? "" : "<transform name=\"to_world\">" + origin_ + "</transform>"));
   }
 
   const Scene& scene_;
@@ -295,6 +318,7 @@ class MitsubaWriter {
   Diagnostics& warnings_;
   Geometry geometry_;
   std::string xml_;
+  std::string origin_;  // the part of a transform that moves to it; "" if it is 0
   UniqueNames names_{"_"};
   MitsubaMaterials materials_;
 };

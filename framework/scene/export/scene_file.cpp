@@ -40,26 +40,30 @@ Json moverJson(const Mover& mover, const std::string& node) {
   return out;
 }
 
-Json lightMotionJson(const LightMotion& motion, const std::string& light) {
+Json vector(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json lightMotionJson(const Scene& scene, const LightMotion& motion, const std::string& light) {
   Json out = {{"light", light}};
   describe(out, motion);
   for (const LightKey& k : motion.keys)
     out["keys"].push_back({{"t", shortest(k.time)},
-                           {"position", vector(k.position)},
+                           {"position", vector(authoredPlace(scene, k.position))},
                            {"direction", vector(k.direction)},
                            {"color", vector(k.color)},
                            {"intensity", shortest(k.intensity)}});
   return out;
 }
 
-Json cameraJson(const std::vector<CameraKey>& path) {
+Json cameraJson(const Scene& scene) {
+  const std::vector<CameraKey>& path = scene.cameraPath;
   const Camera& first = path.front().camera;
   Json out = {{"near", shortest(first.zNear)}, {"far", shortest(first.zFar)}, {"path", Json::array()}};
   for (const CameraKey& k : path) {
     const Camera& c = k.camera;
+    const glm::dvec3 eye = authoredPlace(scene, c.position);
     out["path"].push_back({{"t", shortest(k.time)},
-                           {"eye", vector(c.position)},
-                           {"target", vector(c.position + c.orientation * glm::vec3(0, 0, -1))},
+                           {"eye", vector(eye)},
+                           {"target", vector(eye + glm::dvec3(c.orientation * glm::vec3(0, 0, -1)))},
                            {"up", vector(c.orientation * glm::vec3(0, 1, 0))},
                            {"fov_deg", shortest(glm::degrees(c.verticalFov))}});
   }
@@ -142,11 +146,11 @@ std::string sceneFileText(const Scene& scene, const SceneFileNames& names, Diagn
                     {"inward_deg", shortest(glm::degrees(scene.lens->inward))},
                     {"up_deg", shortest(glm::degrees(scene.lens->up))},
                     {"down_deg", shortest(glm::degrees(scene.lens->down))}};
-  if (!scene.cameraPath.empty()) root["camera"] = cameraJson(scene.cameraPath);
+  if (!scene.cameraPath.empty()) root["camera"] = cameraJson(scene);
   if (!scene.gaze.empty()) root["gaze"] = gazeJson(scene.gaze);
   if (Json movers = moversJson(scene, names, warnings); !movers.empty()) root["movers"] = std::move(movers);
   for (const LightMotion& m : scene.lightMotions)
-    root["moving_lights"].push_back(lightMotionJson(m, names.lights[m.light]));
+    root["moving_lights"].push_back(lightMotionJson(scene, m, names.lights[m.light]));
   return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -4,6 +4,7 @@
 
 #include "framework/scene/file/reader.h"
 #include "framework/scene/load.h"
+#include "framework/scene/origin.h"
 
 namespace fovea::scene {
 
@@ -131,7 +132,7 @@ void MotionReader::moverKey(const Value& v, const std::string& path, MoverEntry&
   key.time = float(r.number("t", 0, 0, 1e6));
   if (!m.keys.empty() && r.has("t") && key.time <= m.keys.back().time)
     mistake(r, "t", "the times of a path must increase");
-  if (r.has("translation")) key.translation = readVector(r, "translation", glm::vec3(0));
+  if (r.has("translation")) key.translation = readPlace(r, "translation");
   if (r.has("rotation_deg"))
     key.rotation = glm::quat(glm::radians(readVector(r, "rotation_deg", glm::vec3(0))));
   if (const auto q = r.numbers("quaternion", 4)) {
@@ -169,7 +170,7 @@ void MotionReader::lightKey(const Value& v, const std::string& path, LightEntry&
   key.time = float(r.number("t", 0, 0, 1e6));
   if (!l.keys.empty() && r.has("t") && key.time <= l.keys.back().time)
     mistake(r, "t", "the times of a path must increase");
-  if (r.has("position")) key.position = readVector(r, "position", glm::vec3(0));
+  if (r.has("position")) key.position = readPlace(r, "position");
   if (r.has("direction")) key.direction = readDirection(r, "direction", glm::vec3(0, -1, 0));
   if (r.has("color")) key.color = readColor(r, "color", glm::vec3(1));
   if (r.has("intensity")) key.intensity = float(r.number("intensity", 1, 0, 1e12));
@@ -231,6 +232,7 @@ uint32_t MotionReader::nodeOf(const MoverEntry& m, Scene& scene, const std::file
   Node n;
   n.name = m.name;
   n.scale = m.scale;
+  n.translation = fromAuthor(scene, glm::dvec3(0));
   n.mesh = uint32_t(scene.meshes.size());
   scene.meshes.push_back({m.name, {std::move(p)}});
   scene.nodes.push_back(n);
@@ -244,9 +246,15 @@ void MotionReader::applyMover(const MoverEntry& m, uint32_t index, Scene& scene)
                          "the matrix of node `" + node.name + "` shears or flattens it; it cannot move");
   node.dynamic = true;
   Mover mover{index, m.smooth, m.repeat, {}};
-  for (const PoseKey& k : m.keys)
-    mover.keys.push_back(
-        {k.time, k.translation.value_or(node.translation), k.rotation.value_or(node.rotation), k.visible});
+  const glm::dvec3 ownTranslation = authoredTranslation(scene, index);
+  for (const PoseKey& k : m.keys) {
+    const glm::quat rotation = k.rotation.value_or(node.rotation);
+    mover.keys.push_back({k.time,
+                          translationFrom(scene, index, k.translation.value_or(ownTranslation), rotation),
+                          rotation, k.visible});
+  }
+  // What the mover has brought is at rest where it begins, and not at the author's origin, which may be far away.
+  if (m.node.empty() && scene.origin != glm::dvec3(0)) node.translation = mover.keys.front().translation;
   scene.movers.push_back(std::move(mover));
 }
 
@@ -292,8 +300,9 @@ void MotionReader::applyLight(const LightEntry& l, Scene& scene) {
   const Light& light = scene.lights[found];
   LightMotion motion{found, l.smooth, l.repeat, {}};
   for (const LightKeyEntry& k : l.keys)
-    motion.keys.push_back({k.time, k.position.value_or(light.position), k.direction.value_or(light.direction),
-                           k.color.value_or(light.color), k.intensity.value_or(light.intensity)});
+    motion.keys.push_back({k.time, k.position ? fromAuthor(scene, *k.position) : light.position,
+                           k.direction.value_or(light.direction), k.color.value_or(light.color),
+                           k.intensity.value_or(light.intensity)});
   scene.lightMotions.push_back(std::move(motion));
 }
 

@@ -30,6 +30,13 @@ inline glm::vec3 readVector(json::ObjectReader& r, std::string_view key, glm::ve
   return v ? glm::vec3((*v)[0], (*v)[1], (*v)[2]) : fallback;
 }
 
+// A place in the author's coordinates, which become those of the scene once its origin is known
+// (framework/scene/origin.h).
+inline glm::dvec3 readPlace(json::ObjectReader& r, std::string_view key) {
+  const auto v = r.numbers(key, 3);
+  return v ? glm::dvec3((*v)[0], (*v)[1], (*v)[2]) : glm::dvec3(0);
+}
+
 inline glm::vec3 readColor(json::ObjectReader& r, std::string_view key, glm::vec3 fallback) {
   const glm::vec3 c = readVector(r, key, fallback);
   if (c.x < 0 || c.y < 0 || c.z < 0) mistake(r, key, "a colour has no negative parts");
@@ -121,7 +128,7 @@ class MotionReader {
  private:
   struct PoseKey {
     float time = 0;
-    std::optional<glm::vec3> translation;
+    std::optional<glm::dvec3> translation;  // the author's
     std::optional<glm::quat> rotation;
     bool visible = true;
   };
@@ -136,7 +143,8 @@ class MotionReader {
   };
   struct LightKeyEntry {
     float time = 0;
-    std::optional<glm::vec3> position, direction, color;
+    std::optional<glm::dvec3> position;  // the author's
+    std::optional<glm::vec3> direction, color;
     std::optional<float> intensity;
   };
   struct LightEntry {

@@ -12,6 +12,7 @@
 #include "framework/scene/floor.h"
 #include "framework/scene/load.h"
 #include "framework/scene/motion/motion.h"
+#include "framework/scene/origin.h"
 
 namespace fovea::scene {
 namespace fs = std::filesystem;
@@ -30,6 +31,11 @@ struct ModelEntry {
   Placement placement;
   std::optional<SubdivisionEntry> subdivision;
   AnimationChoice animation;
+};
+
+struct Look {
+  glm::dvec3 eye{0}, target{0, 0, -1};
+  glm::vec3 up{0, 1, 0};
 };
 
 struct EnvironmentEntry {
@@ -78,19 +84,25 @@ class Parser {
   Scene assemble(const fs::path& folder, Diagnostics& warnings) {
     Scene out = std::move(scene_);
     if (gazeFile_) out.gaze = readGazeCsv(findFile(*gazeFile_, folder));
+    std::vector<Scene> models;
+    std::vector<DoubleBounds> parts;
     for (const ModelEntry& m : models_) {
-      Scene model = m.builtin.empty()
-                        ? loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder),
-                                   warnings, out.fullMaterials)
-                        : builtin(m.builtin);
+      Scene& model = models.emplace_back(
+          m.builtin.empty() ? loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder),
+                                       warnings, out.fullMaterials)
+                            : builtin(m.builtin));
       if (!hasExposure_ && !m.builtin.empty()) out.exposure = model.exposure;
       if (!hasEnvironment_ && !m.builtin.empty()) out.environment = model.environment;
       if (out.gaze.empty()) out.gaze = model.gaze;
       if (m.subdivision) applySubdivision(*m.subdivision, model);
       chooseAnimation(model, m.animation, errors_);
-      appendModel(out, std::move(model), m.placement);
+      for (const DoubleBounds& part : authoredParts(model))
+        parts.emplace_back().include(part, exactTransform(m.placement));
     }
     errors_.throwIfErrors();
+    out.origin = originOf(boundsOfMost(parts));
+    placeAll(out);
+    for (size_t i = 0; i < models.size(); ++i) appendModel(out, std::move(models[i]), models_[i].placement);
     if (floor_) addFloor(out, *floor_);
     if (environment_)
       out.environmentMap =
@@ -126,7 +138,7 @@ class Parser {
       r.choice("builtin", "", names);
     Placement& p = m.placement;
     p.name = r.text("name", m.builtin.empty() ? fs::path(m.file).stem().string() : m.builtin);
-    p.translation = readVector(r, "translate", glm::vec3(0));
+    p.translation = readPlace(r, "translate");
     p.rotation = glm::quat(glm::radians(readVector(r, "rotate", glm::vec3(0))));
     p.scale = readScale(r, "scale", glm::vec3(1));
     p.lights = r.boolean("lights", true);
@@ -140,6 +152,7 @@ class Parser {
   void light(const Value& v, const std::string& path) {
     ObjectReader r(v, path, errors_);
     Light l;
+    glm::dvec3 place(0);
     const std::string type = r.require("type") ? r.choice("type", "", {"directional", "point", "spot"}) : "";
     if (type.empty()) return;  // its other members depend on the type
     l.type = type == "directional" ? LightType::Directional
@@ -150,7 +163,7 @@ class Parser {
     l.intensity = float(r.number("intensity", 1, 0, 1e12));
     if (l.type != LightType::Directional) {
       r.require("position");
-      l.position = readVector(r, "position", glm::vec3(0));
+      place = readPlace(r, "position");
       l.range = float(r.number("range", 0, 0, 1e12));
     }
     if (l.type != LightType::Point) {
@@ -166,6 +179,7 @@ class Parser {
     }
     r.finish();
     scene_.lights.push_back(l);
+    lightPlaces_.push_back(place);
   }
 
   void camera(const Value& v) {
@@ -182,7 +196,6 @@ class Parser {
                [&](const Value& key, const std::string& path) { cameraKey(key, path, base, up, fov); });
       if (const Value* list = r.value().find("path"); list->isArray() && list->items.empty())
         mistake(r, "path", "a camera path needs at least one key");
-      if (!scene_.cameraPath.empty()) scene_.cameras.push_back(scene_.cameraPath.front().camera);
     } else {
       look(r, base, up, fov);
       scene_.cameras.push_back(base);
@@ -205,18 +218,44 @@ class Parser {
     scene_.cameraPath.push_back(key);
   }
 
+  // The camera is placed once the origin of the scene is known.
   void look(ObjectReader& r, Camera& camera, glm::vec3 up, double fov) {
-    r.require("eye");
-    r.require("target");
-    camera.position = readVector(r, "eye", glm::vec3(0));
-    const glm::vec3 target = readVector(r, "target", camera.position + glm::vec3(0, 0, -1));
     camera.verticalFov = float(glm::radians(fov));
-    const glm::vec3 forward = target - camera.position;
-    const float distance = glm::length(forward);
-    if (!std::isfinite(distance))
+    Look& look = looks_.emplace_back();
+    look.up = up;
+    if (!r.require("eye") || !r.require("target")) return;
+    look.eye = readPlace(r, "eye");
+    look.target = readPlace(r, "target");
+    const double distance = glm::length(look.target - look.eye);
+    if (!std::isfinite(glm::length(glm::vec3(look.eye))) || !std::isfinite(float(distance)))
       return mistake(r, "eye", "`eye` or `target` is too far away for single precision");
-    if (distance <= 1e-6f) return mistake(r, "target", "`eye` and `target` are the same point");
-    camera.orientation = lookAlong(forward, up);
+    if (distance <= 1e-6) return mistake(r, "target", "`eye` and `target` are the same point");
+  }
+
+  void placeCamera(const Scene& scene, const Look& look, Camera& camera) const {
+    camera.position = fromAuthor(scene, look.eye);
+    camera.orientation = lookAlong(fromAuthor(scene, look.target) - camera.position, look.up);
+  }
+
+  // What the file says in the author's coordinates, apart from models and movers.
+  void placeAll(Scene& scene) {
+    for (size_t i = 0; i < lightPlaces_.size(); ++i)
+      if (scene.lights[i].type != LightType::Directional)
+        scene.lights[i].position = fromAuthor(scene, lightPlaces_[i]);
+    for (size_t i = 0; i < scene.cameraPath.size(); ++i)
+      placeCamera(scene, looks_[i], scene.cameraPath[i].camera);
+    if (!scene.cameraPath.empty())
+      scene.cameras.push_back(scene.cameraPath.front().camera);
+    else if (!scene.cameras.empty())
+      placeCamera(scene, looks_[0], scene.cameras[0]);
+    if (floor_) floor_->position = fromAuthor(scene, floorPlace_);
+  }
+
+  static glm::dmat4 exactTransform(const Placement& p) {
+    glm::dmat4 m = glm::mat4_cast(glm::dquat(p.rotation));
+    for (int axis = 0; axis < 3; ++axis) m[axis] *= double(p.scale[axis]);
+    m[3] = glm::dvec4(p.translation, 1);
+    return m;
   }
 
   void environment(const Value& v) {
@@ -254,7 +293,7 @@ class Parser {
     r.require("position");
     r.require("radius");
     Floor f;
-    f.position = readVector(r, "position", f.position);
+    floorPlace_ = readPlace(r, "position");
     f.radius = float(r.number("radius", f.radius, 1e-6, 1e9));
     f.color = readReflectance(r, "color", f.color);
     r.finish();
@@ -291,6 +330,10 @@ class Parser {
   std::optional<Sky> sky_;
   bool hasSun_ = true;
   std::optional<Floor> floor_;
+  // In the author's coordinates: of scene_.lights; of the camera or of the keys of its path; of the floor.
+  std::vector<glm::dvec3> lightPlaces_;
+  std::vector<Look> looks_;
+  glm::dvec3 floorPlace_{0};
   bool hasExposure_ = false, hasEnvironment_ = false;
 };
 

@@ -13,10 +13,11 @@ namespace fovea::scene {
 Scene loadSceneFile(const std::filesystem::path& file, Diagnostics& warnings);
 Scene parseSceneFile(const json::Value& root, const std::filesystem::path& file, Diagnostics& warnings);
 
-// Appends `model` under a new root node with this transform, which also applies to its lights and cameras.
+// Appends `model` under a new root node with this transform, which also applies to its lights and cameras. The
+// translation is in the author's coordinates.
 struct Placement {
   std::string name;
-  glm::vec3 translation{0};
+  glm::dvec3 translation{0};
   glm::quat rotation{1, 0, 0, 0};
   glm::vec3 scale{1};
   bool lights = true;

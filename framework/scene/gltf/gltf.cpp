@@ -4,6 +4,7 @@
 
 #include "framework/scene/gltf/internal.h"
 #include "framework/scene/load.h"
+#include "framework/scene/origin.h"
 
 namespace fovea::scene {
 namespace gltf {
@@ -47,6 +48,7 @@ Scene parseGltf(std::vector<uint8_t> bytes, const std::filesystem::path& file, D
   buildNodes(c);
   buildSkins(c);
   buildAnimations(c);
+  recentre(scene, c.local);
   if (scene.materials.empty()) scene.materials.emplace_back().name = "default";
   if (scene.meshes.empty() || scene.nodes.empty())
     c.warn("", "the model shows nothing: no scene with a mesh in it");

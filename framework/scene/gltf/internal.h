@@ -120,6 +120,7 @@ struct Context {
   std::vector<std::array<int, 2>> texCoordsOfMaterial{};
   uint32_t defaultMaterial = kNoIndex;  // made on demand for primitives without one
   std::vector<uint32_t> sceneNode{};    // node in the scene for each glTF node; kNoIndex if it is not shown
+  std::vector<glm::dmat4> local{};      // transforms of the nodes in the scene, as the file gives them
   uint64_t vertices = 0;
   uint64_t degenerateTriangles = 0, badNormals = 0;
 

@@ -89,15 +89,16 @@ class NodeBuilder {
     Node node;
     node.name = n.name.empty() ? "node " + std::to_string(from) : n.name;
     node.parent = parent;
+    glm::dmat4 exact(1.0);
     if (n.matrix.size() == 16) {
-      glm::mat4 m(1.0f);
-      for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = float(n.matrix[size_t(i)]);
-      node.matrix = m;
+      for (int i = 0; i < 16; ++i) exact[i / 4][i % 4] = n.matrix[size_t(i)];
+      node.matrix = glm::mat4(exact);
     } else {
       if (n.translation.size() == 3)
         node.translation = {n.translation[0], n.translation[1], n.translation[2]};
       if (n.scale.size() == 3) node.scale = {n.scale[0], n.scale[1], n.scale[2]};
       if (n.rotation.size() == 4) node.rotation = rotationOf(n, from);
+      exact = exactTransform(n, node);
     }
     const glm::mat4 local = localTransform(node);
     for (int i = 0; i < 16; ++i)
@@ -107,8 +108,22 @@ class NodeBuilder {
     if (n.mesh >= 0 && !n.weights.empty()) readWeights(n, from, node);
     const uint32_t index = uint32_t(c_.scene.nodes.size());
     c_.scene.nodes.push_back(node);
+    c_.local.push_back(exact);
     nodeOf_[from] = index;
     return index;
+  }
+
+  // Of translation, rotation and scale. `node` says whether the rotation is usable.
+  static glm::dmat4 exactTransform(const tinygltf::Node& n, const Node& node) {
+    glm::dmat4 m(1.0);
+    if (n.rotation.size() == 4 && node.rotation != glm::quat(1, 0, 0, 0))
+      m = glm::mat4_cast(
+          glm::normalize(glm::dquat(n.rotation[3], n.rotation[0], n.rotation[1], n.rotation[2])));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (n.scale.size() == 3) m[axis] *= n.scale[size_t(axis)];
+      if (n.translation.size() == 3) m[3][axis] = n.translation[size_t(axis)];
+    }
+    return m;
   }
 
   void readWeights(const tinygltf::Node& n, size_t from, Node& node) const {

@@ -98,16 +98,18 @@ void Motion::record(const scene::Moment& moment) {
   cameraTrack_.push_back({at, moment.camera});
 }
 
-std::string Motion::cameraKeys() const {
+std::string Motion::cameraKeys(const glm::dvec3& origin) const {
   std::string text = "{\n  \"camera\": {\n";
   if (!cameraTrack_.empty())
     text += fmt::format("    \"fov_deg\": {:.6g},\n", glm::degrees(cameraTrack_[0].camera.verticalFov));
   text += "    \"path\": [";
   const char* separator = "\n";
   for (const scene::CameraKey& key : cameraTrack_) {
-    const glm::vec3 eye = key.camera.position, target = eye + key.camera.orientation * glm::vec3(0, 0, -1);
+    const glm::dvec3 eye = origin + glm::dvec3(key.camera.position),
+                     target = eye + glm::dvec3(key.camera.orientation * glm::vec3(0, 0, -1));
     text += fmt::format(
-        "{}      {{ \"t\": {:.9g}, \"eye\": [{:.9g}, {:.9g}, {:.9g}], \"target\": [{:.9g}, {:.9g}, {:.9g}] "
+        "{}      {{ \"t\": {:.9g}, \"eye\": [{:.12g}, {:.12g}, {:.12g}], \"target\": [{:.12g}, {:.12g}, "
+        "{:.12g}] "
         "}}",
         separator, key.time, eye.x, eye.y, eye.z, target.x, target.y, target.z);
     separator = ",\n";

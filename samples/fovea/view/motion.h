@@ -41,7 +41,7 @@ class Motion {
   // The gaze of the frames since recording began, as `fovea render --gaze-trace FILE --gaze-gap 0` replays it.
   std::string gazeTable() const;
   // Where the camera was in these frames, as the member `camera` of a scene file.
-  std::string cameraKeys() const;
+  std::string cameraKeys(const glm::dvec3& origin) const;
   size_t recorded() const { return track_.size(); }
 
  private:
