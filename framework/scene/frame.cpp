@@ -23,6 +23,12 @@ float farPlane(const Camera& camera, const Geometry& geometry) {
   return std::max(1.01f * reach, 10.0f * camera.zNear);
 }
 
+// The vertical field of view with which both sides of the author's picture are seen in one of this shape.
+float fovIn(const Camera& camera, float shape) {
+  if (camera.aspectRatio <= shape) return camera.verticalFov;
+  return 2 * std::atan(std::tan(0.5f * camera.verticalFov) * camera.aspectRatio / shape);
+}
+
 // One eye of a camera. `side` is -1 for left, 1 for right and 0 for the camera itself.
 Camera eyeOf(Camera camera, float side, float ipd) {
   camera.position += 0.5f * side * ipd * (glm::normalize(camera.orientation) * glm::vec3(1, 0, 0));
@@ -83,7 +89,8 @@ View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry, g
   v.size = glm::max(size, glm::uvec2(1));
   v.eye = camera.position;
   v.gaze = gaze;
-  v.verticalFov = camera.verticalFov;
+  const float shape = float(v.size.x) / float(v.size.y);
+  v.verticalFov = fovIn(camera, shape);
   const glm::quat q = glm::normalize(camera.orientation);
   const glm::mat3 rotation = glm::transpose(glm::mat3_cast(q));
   v.worldToView = glm::mat4(rotation);
@@ -96,7 +103,7 @@ View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry, g
     v.viewToClip[2][1] *= -1.0f;  // with [1][1] below
     v.verticalFov = std::atan(f.up) + std::atan(f.down);
   } else {
-    v.viewToClip = glm::perspectiveRH_ZO(camera.verticalFov, float(v.size.x) / float(v.size.y), zNear, zFar);
+    v.viewToClip = glm::perspectiveRH_ZO(v.verticalFov, shape, zNear, zFar);
   }
   v.viewToClip[1][1] *= -1.0f;  // Vulkan's y points down
   v.worldToClip = v.viewToClip * v.worldToView;

@@ -53,6 +53,7 @@ void hash(Hasher& h, const Camera& c) {
   const float scalars[] = {c.orientation.w, c.orientation.x, c.orientation.y, c.orientation.z,
                            c.verticalFov,   c.zNear,         c.zFar};
   h.add(scalars, 7);
+  if (c.aspectRatio != 0) h.add(c.aspectRatio);
 }
 
 template <class Motion>

@@ -37,6 +37,25 @@ TEST(View, ClipSpaceIsVulkans) {
   EXPECT_NEAR(project(v, {10 * t, 0, -5}).x, 1, 1e-5f);  // the image is twice as wide as high
 }
 
+// glTF 2.0, 3.10.3: where the picture has another shape, nothing of the author's view should be cut off.
+TEST(View, ANarrowPictureShowsBothSidesOfTheAuthorsFrame) {
+  Camera c;
+  c.verticalFov = 0.7f;
+  c.aspectRatio = 16.0f / 9.0f;
+  const Geometry geometry = bounds(glm::vec3(-1), glm::vec3(1));
+  const float up = std::tan(0.35f), side = up * c.aspectRatio;
+  const float clip = 1 + 1e-5f;
+  for (const glm::uvec2 size :
+       {glm::uvec2(64, 64), glm::uvec2(9, 100), glm::uvec2(160, 90), glm::uvec2(300, 100)}) {
+    const View v = makeView(c, size, geometry);
+    const glm::vec3 corner = project(v, {side, up, -1});
+    EXPECT_LE(corner.x, clip);
+    EXPECT_LE(-corner.y, clip);
+    EXPECT_NEAR(std::max(corner.x, -corner.y), 1, 1e-4f);  // and nothing more than is necessary
+    EXPECT_NEAR(v.viewToClip[1][1], -1 / std::tan(0.5f * v.verticalFov), 1e-4f);
+  }
+}
+
 TEST(View, RaysHitWhatIsProjectedThere) {
   Camera c;
   c.position = {1, 2, 3};

@@ -166,6 +166,9 @@ struct Camera {
   glm::quat orientation{1, 0, 0, 0};  // looks along its -Z, its +Y is up
   float verticalFov = 0.8f;           // radians
   float zNear = 0.05f, zFar = 0;      // zFar 0: derived from the size of the scene
+  // Width over height of the picture that the author framed; 0 if unknown. In a narrower picture, the vertical field of
+  // view grows until both sides of that picture are seen.
+  float aspectRatio = 0;
 };
 
 // The field of view of one eye behind the lens of a display: angles between the line of sight and the edges of the

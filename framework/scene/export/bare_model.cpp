@@ -35,6 +35,7 @@ Json firstCameraJson(const Scene& s) {
   const glm::vec3 upright = lookAlong(forward, {0, 1, 0}) * glm::vec3(0, 1, 0);
   if (glm::distance(up, upright) > 1e-5f) camera["up"] = listOf(up);
   camera["fov_deg"] = degreesOf(c.verticalFov);
+  if (c.aspectRatio > 0) camera["aspect"] = shortest(c.aspectRatio);
   camera["near"] = shortest(c.zNear);
   if (c.zFar > 0) camera["far"] = shortest(c.zFar);
   return camera;

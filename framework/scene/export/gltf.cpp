@@ -385,6 +385,7 @@ class GltfWriter {
     for (const Camera& c : scene_.cameras) {
       Json lens = {{"yfov", shortest(c.verticalFov)}, {"znear", shortest(c.zNear)}};
       if (c.zFar > 0) lens["zfar"] = shortest(c.zFar);
+      if (c.aspectRatio > 0) lens["aspectRatio"] = shortest(c.aspectRatio);
       root_["cameras"].push_back({{"name", c.name}, {"type", "perspective"}, {"perspective", lens}});
       addRoot({{"name", names_.add("camera " + c.name)},
                {"translation", numbers(c.position, 3)},

@@ -202,9 +202,14 @@ class MitsubaWriter {
     const float diagonal = geometry_.empty() ? 1 : glm::length(geometry_.boundsMax - geometry_.boundsMin);
     const glm::vec3 centre = 0.5f * (geometry_.boundsMin + geometry_.boundsMax);
     const float far = c.zFar > 0 ? c.zFar : glm::distance(c.position, centre) + diagonal;
+    // A picture that is narrower than the author's shows both sides of it.
+    const bool narrow = c.aspectRatio * float(options_.size.y) > float(options_.size.x);
+    const double slope = std::tan(0.5 * double(c.verticalFov));
+    const double degrees = narrow ? glm::degrees(2 * std::atan(slope * double(c.aspectRatio)))
+                                  : glm::degrees(double(c.verticalFov));
     line("<sensor type=\"perspective\">");
-    line("  <string name=\"fov_axis\" value=\"y\"/>");
-    line(fmt::format("  <float name=\"fov\" value=\"{}\"/>", glm::degrees(double(c.verticalFov))));
+    line(fmt::format("  <string name=\"fov_axis\" value=\"{}\"/>", narrow ? "x" : "y"));
+    line(fmt::format("  <float name=\"fov\" value=\"{}\"/>", degrees));
     line(fmt::format("  <float name=\"near_clip\" value=\"{}\"/><float name=\"far_clip\" value=\"{}\"/>",
                      c.zNear, far));
     line("  " + toWorld(c.position, c.orientation, origin_));

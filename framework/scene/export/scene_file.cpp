@@ -58,6 +58,7 @@ Json cameraJson(const Scene& scene) {
   const std::vector<CameraKey>& path = scene.cameraPath;
   const Camera& first = path.front().camera;
   Json out = {{"near", shortest(first.zNear)}, {"far", shortest(first.zFar)}, {"path", Json::array()}};
+  if (first.aspectRatio > 0) out["aspect"] = shortest(first.aspectRatio);
   for (const CameraKey& k : path) {
     const Camera& c = k.camera;
     const glm::dvec3 eye = authoredPlace(scene, c.position);

@@ -184,10 +184,11 @@ class Parser {
 
   void camera(const Value& v) {
     ObjectReader r(v, "camera", errors_);
-    const double fov = r.number("fov_deg", 50, 1, 170);
+    const double fov = r.number("fov_deg", 50, 1, 170), aspect = r.number("aspect", 0, 0, 1000);
     const glm::vec3 up = readDirection(r, "up", glm::vec3(0, 1, 0));
     Camera base;
     base.name = "scene";
+    base.aspectRatio = float(aspect);
     base.zNear = float(r.number("near", 0.05, 1e-5, 1e6));
     base.zFar = float(r.number("far", 0, 0, 1e9));
     if (base.zFar != 0 && base.zFar <= base.zNear) mistake(r, "far", "`far` must be larger than `near`");

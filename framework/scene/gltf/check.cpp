@@ -118,7 +118,7 @@ class VersionChecker : DocumentReader {
         ignored.push_back(v->string);
     if (!ignored.empty())
       warnings.warning({source_.name, 0, 0}, "extensionsUsed",
-                       "ignored: " + join(ignored) + "; the model's fall-back is shown instead");
+                       "not supported, so that the model is shown without what they add: " + join(ignored));
     return true;
   }
 

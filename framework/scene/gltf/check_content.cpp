@@ -137,15 +137,10 @@ class ContentChecker : DocumentReader {
     each("cameras", [&](const Value& v, const std::string& path) {
       nameOfObject(v, path);
       ObjectReader r(v, path, errors_);
-      const std::string type = r.choice("type", "perspective", {"perspective", "orthographic"});
+      r.choice("type", "perspective", {"perspective", "orthographic"});
       if (const Value* p = r.object("perspective")) {
         ObjectReader q(*p, path + ".perspective", errors_);
-        q.number("yfov", 1, 1e-3, 3.14159);
-        q.number("znear", 0.1, 1e-6);
-        q.number("zfar", 0, 0);
-        q.number("aspectRatio", 1, 0);
-      } else if (type == "perspective") {
-        error(v, path, "a perspective camera needs `perspective`");
+        for (const char* key : {"yfov", "znear", "zfar", "aspectRatio"}) q.number(key, 1);
       }
     });
     const Value* lights = extension(root_, "", "KHR_lights_punctual");

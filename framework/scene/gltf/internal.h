@@ -138,6 +138,11 @@ std::vector<uint32_t> readIndices(const Context& c, int accessor, const std::str
 void buildMaterials(Context& c);
 void buildMeshes(Context& c);
 void buildNodes(Context& c);  // nodes, lights, cameras
+
+// All cameras of the file, at the origin; for orthographic ones only the name.
+std::vector<Camera> readCameras(const Context& c);
+bool isOrthographic(const json::Value& camera);
+void warnOfOrthographic(const Context& c);  // once the nodes are built
 void buildSkins(Context& c);
 void buildAnimations(Context& c);  // the first animation plays
 

@@ -24,7 +24,7 @@ glm::quat orientationOf(const glm::mat4& m) {
 
 class NodeBuilder {
  public:
-  explicit NodeBuilder(Context& c) : c_(c), nodeOf_(c.sceneNode) {
+  explicit NodeBuilder(Context& c) : c_(c), nodeOf_(c.sceneNode), cameras_(readCameras(c)) {
     nodeOf_.assign(c.model.nodes.size(), kNoIndex);
   }
 
@@ -44,6 +44,7 @@ class NodeBuilder {
     world_ = worldTransforms(c_.scene);
     for (size_t i = 0; i < nodeOf_.size(); ++i)
       if (nodeOf_[i] != kNoIndex) attach(i);
+    warnOfOrthographic(c_);
   }
 
  private:
@@ -147,9 +148,7 @@ class NodeBuilder {
     const tinygltf::Node& n = c_.model.nodes[from];
     Node& node = c_.scene.nodes[nodeOf_[from]];
     const glm::mat4& world = world_[nodeOf_[from]];
-    if (n.camera >= 0) {
-      node.camera = camera(size_t(n.camera), world);
-    }
+    if (n.camera >= 0) node.camera = camera(size_t(n.camera), world);
     const auto extension = n.extensions.find("KHR_lights_punctual");
     if (extension == n.extensions.end() || !extension->second.Has("light")) return;
     const int light = extension->second.Get("light").GetNumberAsInt();
@@ -160,19 +159,10 @@ class NodeBuilder {
   }
 
   uint32_t camera(size_t index, const glm::mat4& world) {
-    const tinygltf::Camera& from = c_.model.cameras[index];
-    if (from.type != "perspective") {
-      c_.warn(nameOf("cameras", index, from.name), "orthographic cameras are not supported; it is left out");
-      return kNoIndex;
-    }
-    Camera camera;
-    camera.name = from.name.empty() ? "camera " + std::to_string(index) : from.name;
+    if (isOrthographic(c_.root.find("cameras")->items[index])) return kNoIndex;
+    Camera& camera = c_.scene.cameras.emplace_back(cameras_[index]);
     camera.position = glm::vec3(world[3]);
     camera.orientation = orientationOf(world);
-    camera.verticalFov = float(from.perspective.yfov);
-    camera.zNear = float(from.perspective.znear);
-    camera.zFar = float(from.perspective.zfar);
-    c_.scene.cameras.push_back(camera);
     return uint32_t(c_.scene.cameras.size() - 1);
   }
 
@@ -198,6 +188,7 @@ class NodeBuilder {
 
   Context& c_;
   std::vector<uint32_t>& nodeOf_;
+  std::vector<Camera> cameras_;  // of the file
   std::vector<glm::mat4> world_;
 };
 

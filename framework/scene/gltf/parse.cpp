@@ -93,8 +93,20 @@ void leaveOutIndices(json::Value& primitive) {
     std::erase_if(primitive.members, [](const json::Member& m) { return m.key == "indices"; });
 }
 
-bool hasCompressed(const json::Value& root) {
+// The cameras are read without tinygltf, which refuses a file in which one of them lacks a number.
+bool isComplete(const json::Value& camera) {
+  const json::Value* type = camera.find("type");
+  if (!type) return false;
+  const json::Value* lens = camera.find(type->string);
+  const auto has = [&](const char* key) { return lens && lens->find(key); };
+  return isOrthographic(camera) ? has("xmag") && has("ymag") && has("zfar") && has("znear")
+                                : has("yfov") && has("znear");
+}
+
+bool needsChange(const json::Value& root) {
   bool found = false;
+  if (const json::Value* cameras = root.find("cameras"))
+    found = !std::all_of(cameras->items.begin(), cameras->items.end(), isComplete);
   if (const json::Value* buffers = root.find("buffers"))
     for (const json::Value& b : buffers->items) found = found || isPlaceholder(b);
   if (const json::Value* meshes = root.find("meshes"))
@@ -103,11 +115,12 @@ bool hasCompressed(const json::Value& root) {
   return found;
 }
 
-// The document without what is still to be decoded, because tinygltf insists on the data of buffers and indices: each
-// placeholder has one byte, and primitives have no indices.
-std::string withoutCompressed(json::Value root) {
+// The document without cameras and without what is still to be decoded, because tinygltf insists on the data of buffers
+// and indices: each placeholder has one byte, and primitives have no indices.
+std::string changed(json::Value root) {
   static const json::Value kOneByte =
       json::parse(R"({"byteLength":1,"uri":"data:application/octet-stream;base64,AA=="})", "placeholder");
+  std::erase_if(root.members, [](const json::Member& m) { return m.key == "cameras"; });
   for (json::Member& list : root.members) {
     if (list.key == "buffers")
       std::replace_if(list.value.items.begin(), list.value.items.end(), isPlaceholder, kOneByte);
@@ -153,8 +166,8 @@ bool load(const Source& source, const json::Value& root, tinygltf::TinyGLTF& loa
   std::vector<uint8_t> glb;
   std::span<const uint8_t> file = source.bytes;
   std::string_view text = source.json;
-  if (hasCompressed(root)) {
-    text = document = withoutCompressed(root);
+  if (needsChange(root)) {
+    text = document = changed(root);
     if (source.binary) file = glb = glbOf(document, source);
   }
   if (source.binary)
@@ -196,7 +209,6 @@ void parseModel(const Source& source, const json::Value& root, tinygltf::Model& 
   same("meshes", model.meshes.size());
   same("nodes", model.nodes.size());
   same("scenes", model.scenes.size());
-  same("cameras", model.cameras.size());
   same("skins", model.skins.size());
 }
 

@@ -102,6 +102,8 @@ std::string Motion::cameraKeys(const glm::dvec3& origin) const {
   std::string text = "{\n  \"camera\": {\n";
   if (!cameraTrack_.empty())
     text += fmt::format("    \"fov_deg\": {:.6g},\n", glm::degrees(cameraTrack_[0].camera.verticalFov));
+  if (!cameraTrack_.empty() && cameraTrack_[0].camera.aspectRatio > 0)
+    text += fmt::format("    \"aspect\": {:.6g},\n", cameraTrack_[0].camera.aspectRatio);
   text += "    \"path\": [";
   const char* separator = "\n";
   for (const scene::CameraKey& key : cameraTrack_) {
