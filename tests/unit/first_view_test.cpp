@@ -269,9 +269,36 @@ TEST(FirstView, MetalsAndUnlitMaterialsAreExposedForWhatTheyShow) {
   scene::addFirstView(matt);
   scene::addFirstView(metal);
   EXPECT_NEAR(metal.exposure / matt.exposure, 1, 0.3);
-  EXPECT_EQ(scene::addFirstView(unlit).light, "");
-  EXPECT_LT(unlit.exposure, 1);  // a radiance of 0.5 needs no more
+  EXPECT_EQ(scene::addFirstView(unlit).light, "a sun and a sky");  // for the floor, which would be black
+  EXPECT_LT(unlit.exposure, 1);                                    // a radiance of 0.5 needs no more
   EXPECT_GT(unlit.exposure, 0.2f);
+}
+
+// Things that fill the picture stand on a floor as well, on which their shadow falls.
+TEST(FirstView, AFloorCatchesTheShadowOfBulkyThings) {
+  for (const glm::vec3 half : {glm::vec3(1), glm::vec3(0.01f), glm::vec3(1, 3, 1)}) {
+    scene::Scene s = box(half);
+    scene::addFirstView(s);
+    ASSERT_TRUE(s.assumedFloor && s.assumedSky);
+    const scene::Node& floor = s.nodes.back();
+    const glm::vec3 sun = scene::towardsSun(*s.assumedSky), top(0, half.y, 0);
+    const glm::vec3 shadow = top - sun * ((half.y - floor.translation.y) / sun.y);
+    EXPECT_LT(glm::length(glm::vec2(shadow.x, shadow.z)), floor.scale.x);
+  }
+}
+
+// Surfaces that light themselves would stand on a black floor. Lamps of the model may leave it in the dark.
+TEST(FirstView, EmissiveThingsStandOnAFloorThatIsLit) {
+  scene::Scene s = box(glm::vec3(1)), lamp = box(glm::vec3(1));
+  for (scene::Scene* scene : {&s, &lamp})
+    for (scene::Material& m : scene->materials) m.emission = glm::vec3(0.5f);
+  scene::Light spot;
+  spot.type = scene::LightType::Spot;
+  spot.position = {0, 2, 0};
+  spot.direction = {0, 1, 0};
+  lamp.lights.push_back(spot);
+  EXPECT_EQ(scene::addFirstView(s).light, "a sun and a sky");
+  EXPECT_EQ(scene::addFirstView(lamp).light, "");
 }
 
 // A sun reaches what stands under glass.

@@ -10,8 +10,12 @@
 namespace fovea::scene {
 namespace {
 
-constexpr uint32_t kSide = 32;    // of the picture, pixels
-constexpr float kEmpty = 0.5f;    // the share of it that surfaces have to fill without a floor
+constexpr uint32_t kSide = 32;  // of the picture, pixels
+constexpr float kEmpty =
+    0.5f;  // the share of it that surfaces have to fill without a floor, seen from inside
+constexpr float kBelow =
+    0.02f;  // the share of it that may show the ground without a floor, seen from outside
+constexpr float kShadow = 1.2f;   // length of the shadow of the lowest assumed sun, relative to the height
 constexpr float kFilled = 0.6f;   // and with one
 constexpr float kMostRadius = 3;  // of the floor, relative to half of the scene's diagonal
 constexpr float kGap =
@@ -42,12 +46,16 @@ std::string addFirstFloor(Scene& scene, const Geometry& geometry) {
       if (direction.y < 0 && steps > 0)
         reaches.push_back(glm::distance(view.eye + steps * direction, floor.position));
     }
-  constexpr uint32_t kPixels = kSide * kSide;
-  if (float(surfaces) >= kEmpty * float(kPixels) || reaches.empty()) return {};
+  constexpr float kPixels = float(kSide * kSide);
+  const bool outside = glm::any(glm::lessThan(view.eye, geometry.boundsMin)) ||
+                       glm::any(glm::greaterThan(view.eye, geometry.boundsMax));
+  const bool enough =
+      outside ? float(reaches.size()) < kBelow * kPixels : float(surfaces) >= kEmpty * kPixels;
+  if (enough || reaches.empty()) return {};
   std::ranges::sort(reaches);
-  const size_t wanted = size_t(kFilled * float(kPixels)) - surfaces;
-  const float least = 0.5f * glm::length(glm::vec2(size.x, size.z)),
-              most = kMostRadius * 0.5f * glm::length(size);
+  const size_t wanted = size_t(std::max(kFilled * kPixels - float(surfaces), 0.0f));
+  const float most = kMostRadius * 0.5f * glm::length(size),
+              least = std::min(0.5f * glm::length(glm::vec2(size.x, size.z)) + kShadow * size.y, most);
   floor.radius = std::clamp(reaches[std::min(wanted, reaches.size() - 1)], least, most);
   addFloor(scene, floor);
   return "a floor";

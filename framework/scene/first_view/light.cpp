@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace {
 constexpr uint32_t kWidth = 48;                   // of the picture, pixels
 constexpr uint32_t kGathered = 4;                 // rays for further bounces at each of them
 constexpr float kDark = 0.02f;                    // of the brightest light: less is not visible beside it
+constexpr float kDarkFloor = 0.1f;                // the same of a floor beside what lights itself
 constexpr float kDisplay = 0.45f;                 // mean display value
 constexpr float kClipped = 0.015f;                // most of the surfaces' pixels that may be clipped
 constexpr float kDisplayInDark = 0.27f;           // the same where most of the picture stays dark with that,
@@ -36,15 +38,21 @@ Frame firstFrame(const Scene& scene, const Geometry& geometry) {
 
 float brightest(glm::vec3 light) { return std::max({light.r, light.g, light.b}); }
 
-// Whether at least half of the surfaces are lit enough to be seen beside the brightest.
-bool isLit(const Picture& picture) {
-  std::vector<float> light;
-  for (const MeterPoint& point : picture)
-    if (point.there > 0) light.push_back(brightest(point.radiance));
+// Whether at least half of the surfaces, and of those at most as high as `floor`, are lit enough to be seen beside the
+// brightest.
+bool isLit(const Picture& picture, float floor) {
+  std::vector<float> light, below;
+  for (const MeterPoint& point : picture) {
+    if (!(point.there > 0)) continue;
+    light.push_back(brightest(point.radiance));
+    if (point.position.y <= floor) below.push_back(light.back());
+  }
   if (light.empty()) return true;
   std::ranges::sort(light);
-  const float bright = light[size_t(float(light.size()) * (1 - kClipped))];
-  return bright > 0 && light[light.size() / 2] > kDark * bright;
+  std::ranges::sort(below);
+  const float bright = light[size_t(float(light.size()) * (1 - kClipped))], lit = light[light.size() / 2];
+  return bright > 0 && lit > kDark * bright &&
+         (below.empty() || below[below.size() / 2] > kDarkFloor * bright);
 }
 
 // Share of the surfaces in the picture that a sun in this direction lights.
@@ -104,11 +112,16 @@ void addLamp(Scene& scene, const Picture& picture, const RayScene& rays) {
 
 void setLightMeter(const LightMeter& newMeter) { meter = &newMeter; }
 
-std::string addFirstLight(Scene& scene, const Geometry& geometry) {
+std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdded) {
   if (geometry.empty()) return {};
   const Frame frame = firstFrame(scene, geometry);
   const Picture picture = meter->picture(frame);
-  if (isLit(picture)) return {};
+  // A scene with lights of its own may leave the floor in the dark.
+  const bool floorCounts = floorAdded && scene.lights.empty() && !scene.environmentMap;
+  constexpr float kNowhere = std::numeric_limits<float>::lowest();
+  const float halfGap =
+      0.5e-4f * glm::length(geometry.boundsMax - geometry.boundsMin);  // to what stands on the floor
+  if (isLit(picture, floorCounts ? scene.nodes.back().translation.y + halfGap : kNowhere)) return {};
   if (!scene.environmentMap) scene.assumedSky = findSky(picture, frame);
   if (scene.assumedSky) {
     addDaylight(scene, *scene.assumedSky);
@@ -156,7 +169,7 @@ FirstView addFirstView(Scene& scene) {
   added.camera = addFirstCamera(scene, geometry);
   if (!added.camera.empty()) added.floor = addFirstFloor(scene, geometry);
   if (!added.floor.empty()) geometry = flatten(scene);
-  added.light = addFirstLight(scene, geometry);
+  added.light = addFirstLight(scene, geometry, !added.floor.empty());
   scene.assumed = true;
   scene.assumedFloor = !added.floor.empty();
   scene.exposure = firstExposure(scene, geometry);
