@@ -30,4 +30,10 @@ void addFloor(Scene& scene, const Floor& floor) {
   scene.meshes.push_back({"floor", {std::move(disc)}});
 }
 
+void removeFloor(Scene& scene) {
+  scene.nodes.pop_back();
+  scene.meshes.pop_back();
+  scene.materials.pop_back();
+}
+
 }  // namespace fovea::scene

@@ -15,5 +15,7 @@ struct Floor {
 
 // Appends it as a node, which is visible only from above.
 void addFloor(Scene& scene, const Floor& floor);
+// Undoes addFloor(), if nothing has been appended since.
+void removeFloor(Scene& scene);
 
 }  // namespace fovea::scene

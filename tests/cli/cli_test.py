@@ -163,6 +163,27 @@ class Inputs(CliTest):
             self.assertTrue(wanted, values)
             self.assertEqual([line for line in again.stdout.splitlines() if line.startswith(kind)], wanted)
 
+    def test_the_printed_scene_file_shows_the_same_picture(self):
+        """Wherever the model lies, and whether its camera is its own."""
+        for place in ([0.1, 0.2, 0.3], [54321.1, 0, 0], [448262.125, 35.5, -5411932.25]):
+            for camera in (False, True):
+                with self.subTest(place=place, camera=camera):
+                    model = json.loads(self.model([0, 0, 0, 1, 0, 0, 0, 1, 0]).read_text())
+                    model["nodes"] += [{"children": [0, 2][:1 + camera], "translation": place}]
+                    model["scenes"] = [{"nodes": [1]}]
+                    if camera:
+                        model["cameras"] = [{"type": "perspective", "perspective": {
+                            "yfov": 0.7, "znear": 0.1, "zfar": 20, "aspectRatio": 2}}]
+                        model["nodes"] += [{"camera": 0, "translation": [0.4, 0.3, 3], "rotation": [0, 0, 0.6, 0.8]}]
+                    self.write("model.gltf", model)
+                    printed = self.succeeds("scene", "info", "model.gltf").stdout.split("to be changed:\n")[1]
+                    self.write("own.json", printed)
+                    for scene in ("model.gltf", "own.json"):
+                        self.succeeds("render", "direct", "--scene", scene, *SMALL, "-o", scene + ".pfm")
+                    pixels = (self.folder / "model.gltf.pfm").read_bytes()
+                    self.assertEqual((self.folder / "own.json.pfm").read_bytes(), pixels)
+                    self.assertGreater(len(set(pixels)), 8)
+
     def test_graph_without_what_a_file_shows(self):
         self.graph(outputs={"image": None})
         self.fails(BAD_INPUT, "render", "graph.json", "--scene", "cornellbox", *SMALL, "-o", "a.png", says=["`image`"])

@@ -301,6 +301,25 @@ TEST(FirstView, EmissiveThingsStandOnAFloorThatIsLit) {
   EXPECT_EQ(scene::addFirstView(lamp).light, "");
 }
 
+// A plate under a spot light that does not reach past its edges: the floor would only be a black disc.
+TEST(FirstView, NoFloorWhereTheLampsOfTheModelDoNotReach) {
+  scene::Scene s = box({1, 0.01f, 1});
+  scene::Light spot;
+  spot.type = scene::LightType::Spot;
+  spot.position = {0, 2, 0};
+  spot.direction = {0, -1, 0};
+  spot.innerConeAngle = 0.43f;
+  spot.outerConeAngle = 0.44f;
+  s.lights.push_back(spot);
+  const size_t nodes = s.nodes.size(), materials = s.materials.size();
+  const scene::FirstView added = scene::addFirstView(s);
+  EXPECT_EQ(added.light, "");
+  EXPECT_EQ(added.floor, "");
+  EXPECT_FALSE(s.assumedFloor);
+  EXPECT_EQ(s.nodes.size(), nodes);
+  EXPECT_EQ(s.materials.size(), materials);
+}
+
 // A sun reaches what stands under glass.
 TEST(FirstView, GlassDoesNotHideTheSun) {
   scene::Scene s = room();

@@ -25,12 +25,14 @@ FirstView addFirstView(Scene& scene);
 // front of the scene and above it, which shows the whole scene.
 std::string addFirstCamera(Scene& scene, const Geometry& geometry);
 // A floor under the scene, if the first camera sees it from outside and with ground around it, or else if surfaces fill
-// less than half of its picture: the smallest floor that catches the shadow and with which surfaces fill three fifths of
-// the picture.
+// less than half of its picture: the smallest floor that catches the shadow and with which surfaces fill three fifths
+// of the picture.
 std::string addFirstFloor(Scene& scene, const Geometry& geometry);
 // A sun and a sky; or a lamp, if no sun could reach the surfaces that the first camera sees. Nothing if at least half
-// of them are lit, and, where there is no light but that of emissive and unlit surfaces, also the floor that was added.
+// of them, without the floor that was added, are lit, and, where there is no light but that of emissive and unlit surfaces, also the floor that was added.
 std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdded = false);
+// Whether no light reaches the floor that was added, so that it would only be a black disc.
+bool firstFloorIsDark(const Scene& scene, const Geometry& geometry);
 // The exposure with which the first camera's picture has a mean display value of about 0.45 and hardly any pixel is
 // clipped, rounded to two digits. 1 if nothing is lit.
 float firstExposure(const Scene& scene, const Geometry& geometry);

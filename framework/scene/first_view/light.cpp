@@ -12,6 +12,7 @@
 #include "framework/scene/environment/sky.h"
 #include "framework/scene/first_view/first_view.h"
 #include "framework/scene/first_view/light_meter.h"
+#include "framework/scene/floor.h"
 #include "framework/scene/rays/ray_scene.h"
 
 namespace fovea::scene {
@@ -38,21 +39,32 @@ Frame firstFrame(const Scene& scene, const Geometry& geometry) {
 
 float brightest(glm::vec3 light) { return std::max({light.r, light.g, light.b}); }
 
-// Whether at least half of the surfaces, and of those at most as high as `floor`, are lit enough to be seen beside the
-// brightest.
-bool isLit(const Picture& picture, float floor) {
-  std::vector<float> light, below;
+// How bright the median of the surfaces is, relative to the brightest: of the floor that was added, and of the others.
+// 1 where there are none.
+struct Brightness {
+  float things = 1, floor = 1;
+};
+
+Brightness brightnessOf(const Scene& scene, const Geometry& geometry, const Picture& picture,
+                        bool floorAdded) {
+  const float above = 1e-5f * glm::length(geometry.boundsMax - geometry.boundsMin);
+  const float floor =
+      floorAdded ? scene.nodes.back().translation.y + above : std::numeric_limits<float>::lowest();
+  std::vector<float> all, parts[2];
   for (const MeterPoint& point : picture) {
     if (!(point.there > 0)) continue;
-    light.push_back(brightest(point.radiance));
-    if (point.position.y <= floor) below.push_back(light.back());
+    all.push_back(brightest(point.radiance));
+    parts[point.position.y <= floor].push_back(all.back());
   }
-  if (light.empty()) return true;
-  std::ranges::sort(light);
-  std::ranges::sort(below);
-  const float bright = light[size_t(float(light.size()) * (1 - kClipped))], lit = light[light.size() / 2];
-  return bright > 0 && lit > kDark * bright &&
-         (below.empty() || below[below.size() / 2] > kDarkFloor * bright);
+  if (all.empty()) return {};
+  std::ranges::sort(all);
+  const float bright = all[size_t(float(all.size()) * (1 - kClipped))];
+  const auto median = [&](std::vector<float>& list) {
+    if (list.empty()) return 1.0f;
+    std::ranges::sort(list);
+    return bright > 0 ? list[list.size() / 2] / bright : 0;
+  };
+  return {median(parts[0]), median(parts[1])};
 }
 
 // Share of the surfaces in the picture that a sun in this direction lights.
@@ -116,12 +128,10 @@ std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdde
   if (geometry.empty()) return {};
   const Frame frame = firstFrame(scene, geometry);
   const Picture picture = meter->picture(frame);
-  // A scene with lights of its own may leave the floor in the dark.
-  const bool floorCounts = floorAdded && scene.lights.empty() && !scene.environmentMap;
-  constexpr float kNowhere = std::numeric_limits<float>::lowest();
-  const float halfGap =
-      0.5e-4f * glm::length(geometry.boundsMax - geometry.boundsMin);  // to what stands on the floor
-  if (isLit(picture, floorCounts ? scene.nodes.back().translation.y + halfGap : kNowhere)) return {};
+  const Brightness brightness = brightnessOf(scene, geometry, picture, floorAdded);
+  // Lamps of the model may leave the floor in the dark.
+  const bool floorCounts = scene.lights.empty() && !scene.environmentMap;
+  if (brightness.things > kDark && (!floorCounts || brightness.floor > kDarkFloor)) return {};
   if (!scene.environmentMap) scene.assumedSky = findSky(picture, frame);
   if (scene.assumedSky) {
     addDaylight(scene, *scene.assumedSky);
@@ -130,6 +140,10 @@ std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdde
   addLamp(scene, picture, *RayScene::cached(scene, geometry, Passing::Met));
   scene.assumedLamp = true;
   return "a lamp";
+}
+
+bool firstFloorIsDark(const Scene& scene, const Geometry& geometry) {
+  return brightnessOf(scene, geometry, meter->picture(firstFrame(scene, geometry)), true).floor <= kDark;
 }
 
 float firstExposure(const Scene& scene, const Geometry& geometry) {
@@ -170,6 +184,11 @@ FirstView addFirstView(Scene& scene) {
   if (!added.camera.empty()) added.floor = addFirstFloor(scene, geometry);
   if (!added.floor.empty()) geometry = flatten(scene);
   added.light = addFirstLight(scene, geometry, !added.floor.empty());
+  if (!added.floor.empty() && added.light.empty() && firstFloorIsDark(scene, geometry)) {
+    removeFloor(scene);
+    geometry = flatten(scene);
+    added.floor.clear();
+  }
   scene.assumed = true;
   scene.assumedFloor = !added.floor.empty();
   scene.exposure = firstExposure(scene, geometry);
