@@ -4,7 +4,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <memory>
@@ -15,6 +17,7 @@
 #include "benchmarks/runner/passes.h"
 #include "benchmarks/runner/suite.h"
 #include "benchmarks/runner/tables.h"
+#include "framework/base/number.h"
 #include "framework/base/paths.h"
 #include "framework/session/inputs.h"
 #include "framework/session/interrupt.h"
@@ -33,10 +36,14 @@ struct Shard {
 Shard parseShard(const std::string& text) {
   Shard shard;
   if (text.empty()) return shard;
-  int used = 0;
-  if (std::sscanf(text.c_str(), "%u/%u%n", &shard.index, &shard.count, &used) != 2 ||
-      size_t(used) != text.size() || shard.count < 1 || shard.count > 100'000 || shard.index < 1 ||
-      shard.index > shard.count)
+  const size_t slash = std::min(text.find('/'), text.size());
+  const auto number = [](std::string_view digits) {  // 0 if it is no whole number of at most 100,000
+    const double value = parseDecimal(digits).value_or(0);
+    return value >= 1 && value <= 100'000 && std::trunc(value) == value ? uint32_t(value) : 0;
+  };
+  shard.index = number(text.substr(0, slash));
+  shard.count = number(text.substr(std::min(slash + 1, text.size())));
+  if (shard.index < 1 || shard.index > shard.count)
     throw Error(ExitCode::Usage, "--shard `" + text + "` is not I/N with I from 1 to N", "e.g. --shard 2/8");
   --shard.index;
   return shard;

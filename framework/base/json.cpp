@@ -12,6 +12,7 @@
 #include <unordered_set>
 
 #include "framework/base/files.h"
+#include "framework/base/text_file.h"
 
 namespace fovea::json {
 namespace {
@@ -222,6 +223,13 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
 
 }  // namespace
 
+std::optional<int64_t> Value::whole() const {
+  constexpr double kExact = 9007199254740992.0;  // 2^53, up to which doubles hold all whole numbers
+  if (type == Type::Int) return integer;
+  if (type != Type::Real || std::abs(real) > kExact || std::trunc(real) != real) return std::nullopt;
+  return static_cast<int64_t>(real);
+}
+
 std::string Value::describe() const {
   switch (type) {
     case Type::Null:
@@ -244,6 +252,7 @@ std::string Value::describe() const {
 }
 
 Value parse(std::string_view text, std::string_view file) {
+  text = withoutByteOrderMark(text);
   auto name = std::make_shared<const std::string>(file);
   LineCounter lines(text, name);
   auto fail = [&](size_t offset, std::string message, std::string remedy) {
@@ -252,9 +261,10 @@ Value parse(std::string_view text, std::string_view file) {
         std::vector<Diagnostic>{
             {Severity::Error, lines.at(offset).location(), {}, std::move(message), std::move(remedy)}});
   };
-  // nlohmann skips a byte-order mark and takes a NUL for the end of the text; either would hide something.
-  if (text.substr(0, 3) == "\xEF\xBB\xBF")
-    fail(0, "the file starts with a byte-order mark", "save it as UTF-8 without BOM");
+  if (isUtf16(text)) fail(0, "the file is UTF-16", "save it as UTF-8");
+  // nlohmann would skip a second mark, and takes a NUL for the end of the text; either would hide something.
+  if (text.starts_with(kByteOrderMark))
+    fail(0, "the file has two byte-order marks", "save it as UTF-8 without BOM");
   if (const size_t nul = text.find('\0'); nul != std::string_view::npos)
     fail(nul, "the file contains a NUL byte", "is this a text file?");
   Builder builder(text, name);
@@ -433,65 +443,6 @@ void ObjectReader::finish() {
     diagnostics_.error(member.keyWhere.location(), pathOf(member.key),
                        fmt::format("unknown key `{}`", member.key), std::move(remedy));
   }
-}
-
-namespace {
-
-constexpr size_t kPrintWidth = 110;
-
-std::string printOnOneLine(const Value& value) {
-  switch (value.type) {
-    case Value::Type::Null:
-      return "null";
-    case Value::Type::Bool:
-      return value.boolean ? "true" : "false";
-    case Value::Type::Int:
-      return fmt::format("{}", value.integer);
-    case Value::Type::Real:
-      return fmt::format("{}", value.real);
-    case Value::Type::String:
-      return nlohmann::json(value.string).dump();
-    case Value::Type::Array: {
-      std::string text;
-      for (const Value& item : value.items) text += (text.empty() ? "" : ", ") + printOnOneLine(item);
-      return "[" + text + "]";
-    }
-    case Value::Type::Object:
-      break;
-  }
-  std::string text;
-  for (const Member& member : value.members)
-    text +=
-        (text.empty() ? " " : ", ") + nlohmann::json(member.key).dump() + ": " + printOnOneLine(member.value);
-  return text.empty() ? "{}" : "{" + text + " }";
-}
-
-// `before` and `after` are the numbers of other characters on the first and last line of the value.
-void printInto(std::string& out, const Value& value, size_t indent, size_t before, size_t after) {
-  const std::string line = printOnOneLine(value);
-  const size_t count = value.isObject() ? value.members.size() : value.items.size();
-  if (count == 0 || (indent > 0 && indent + before + line.size() + after <= kPrintWidth)) {
-    out += line;
-    return;
-  }
-  const std::string inner(indent + 2, ' ');
-  out += value.isObject() ? "{\n" : "[\n";
-  for (size_t i = 0; i < count; ++i) {
-    const std::string key =
-        value.isObject() ? nlohmann::json(value.members[i].key).dump() + ": " : std::string();
-    out += inner + key;
-    printInto(out, value.isObject() ? value.members[i].value : value.items[i], indent + 2, key.size(), 1);
-    out += i + 1 < count ? ",\n" : "\n";
-  }
-  out += std::string(indent, ' ') + (value.isObject() ? "}" : "]");
-}
-
-}  // namespace
-
-std::string print(const Value& value) {
-  std::string text;
-  printInto(text, value, 0, 0, 0);
-  return text + "\n";
 }
 
 }  // namespace fovea::json

@@ -44,6 +44,8 @@ struct Value {
   bool isNull() const { return type == Type::Null; }
   bool isBool() const { return type == Type::Bool; }
   bool isInt() const { return type == Type::Int; }
+  // The number if it is whole, however it is written: 500, 500.0 or 5e2.
+  std::optional<int64_t> whole() const;
   bool isNumber() const { return type == Type::Int || type == Type::Real; }
   bool isString() const { return type == Type::String; }
   bool isArray() const { return type == Type::Array; }
@@ -75,9 +77,10 @@ inline const Value* Value::find(std::string_view key) const {
 inline constexpr int kMaxDepth = 64;                   // nesting of arrays and objects
 inline constexpr size_t kMaxBytes = size_t(64) << 20;  // of one file
 
-// Parses strict RFC 8259. `file` is the name used in messages. Throws Error(BadInput) with the place of a syntax
-// error, text after the document, a byte-order mark, a NUL, invalid UTF-8, a number that no double holds, nesting
-// deeper than kMaxDepth, or keys that occur twice in one object (all of these at once).
+// Parses strict RFC 8259, after a byte-order mark of UTF-8 if there is one. `file` is the name used in messages.
+// Throws Error(BadInput) with the place of a syntax error, text after the document, UTF-16, a NUL, invalid UTF-8, a
+// number that no double holds, nesting deeper than kMaxDepth, or keys that occur twice in one object (all of these at
+// once).
 Value parse(std::string_view text, std::string_view file);
 // Also throws Error(BadInput) if the file cannot be read or is larger than kMaxBytes.
 Value parseFile(const std::filesystem::path& file);

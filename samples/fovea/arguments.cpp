@@ -4,9 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-
+#include <cmath>
 #include <map>
 
+#include "framework/base/number.h"
 #include "framework/gpu/device.h"
 
 namespace fovea::cli {
@@ -45,7 +46,7 @@ using ValueType = graph::ParameterSpec::Type;
 
 CLI::Validator valuesOf(const graph::ParameterSpec& spec) {
   if (spec.type == ValueType::Choice) return CLI::IsMember(spec.choices).description("");
-  if (spec.type == ValueType::Int) return CLI::Range(int64_t(spec.min), int64_t(spec.max)).description("");
+  if (spec.type == ValueType::Int) return wholeNumberBetween(int64_t(spec.min), int64_t(spec.max));
   return numberBetween(spec.min, spec.max);
 }
 
@@ -80,7 +81,7 @@ void addViewOptions(CLI::App& command, std::vector<std::string>& set) {
             },
             wrapped(doc))
         ->type_name(valueName(spec))
-        ->check(valuesOf(spec));
+        ->transform(valuesOf(spec));
   }
 }
 
@@ -130,9 +131,22 @@ void addEnvironmentOption(CLI::App& command, std::string& file) {
 CLI::Validator numberBetween(double low, double high) {
   return CLI::Validator(
       [=](const std::string& text) {
-        double value = 0;
-        const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
-        return good ? std::string() : fmt::format("`{}` is not a number from {:g} to {:g}", text, low, high);
+        const std::optional<double> value = parseDecimal(text);
+        return value && *value >= low && *value <= high
+                   ? std::string()
+                   : fmt::format("`{}` is not a number from {} to {}", text, low, high);
+      },
+      "");
+}
+
+CLI::Validator wholeNumberBetween(int64_t low, int64_t high) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        const std::optional<double> value = parseDecimal(text);
+        if (!value || std::trunc(*value) != *value || *value < double(low) || *value > double(high))
+          return fmt::format("`{}` is not a whole number from {} to {}", text, low, high);
+        text = std::to_string(int64_t(*value));
+        return std::string();
       },
       "");
 }

@@ -50,7 +50,7 @@ void addSuiteOptions(CLI::App& command, bench::SuiteOptions& options) {
       ->type_name("WxH");
   command.add_option("--seeds", options.seeds, "Seeds instead of the suite's number of them")
       ->type_name("N")
-      ->check(CLI::Range(1u, 1000u).description(""));
+      ->transform(wholeNumberBetween(1, 1000));
   addDeviceOptions(command, options.device, options.without);
   addFrameLimitOption(command, options.frameLimit);
   addPluginOption(command, options.plugins);
@@ -68,7 +68,7 @@ void addPassBenchOptions(CLI::App& command, bench::PassBenchOptions& options) {
   const auto count = [&](const char* name, uint32_t& value, uint32_t min, const char* doc) {
     command.add_option(name, value, doc)
         ->type_name("N")
-        ->check(CLI::Range(min, 1'000'000u).description(""))
+        ->transform(wholeNumberBetween(min, 1'000'000))
         ->group(group);
   };
   count("--frames", options.frames, 1, "Frames measured in each repeat; default 5");
@@ -85,7 +85,7 @@ void addPassBenchOptions(CLI::App& command, bench::PassBenchOptions& options) {
       .add_option("--threshold", options.threshold,
                   "Changes up to so many percent are not worth a word; default 2")
       ->type_name("P")
-      ->check(CLI::Range(0.0, 1000.0).description(""))
+      ->check(numberBetween(0, 1000))
       ->group(group);
   command.add_flag("--json", options.json, "Print every frame's times as JSON")->group(group);
 }

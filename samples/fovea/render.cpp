@@ -371,19 +371,21 @@ void addRender(CLI::App& program, Action& action) {
       ->type_name("WxH");
   command->add_option("--frames", options->frames, "Frames to render and measure; default 1")
       ->type_name("N")
-      ->check(CLI::Range(1u, 10'000'000u).description(""));
+      ->transform(wholeNumberBetween(1, 10'000'000));
   command
       ->add_option("--warmup", options->warmup,
                    "Frames before those, neither measured nor written; default 0")
       ->type_name("N")
-      ->check(CLI::Range(0u, 10'000'000u).description(""));
+      ->transform(wholeNumberBetween(0, 10'000'000));
   command
       ->add_option(
           "--first", options->first,
           "Number of the first frame, warm-up included: the scene's time is 42 frames a\nsecond; default 0")
       ->type_name("N")
-      ->check(CLI::Range(0u, 10'000'000u).description(""));
-  command->add_option("--seed", options->seed, "Seed of all random numbers; default 1")->type_name("S");
+      ->transform(wholeNumberBetween(0, 10'000'000));
+  command->add_option("--seed", options->seed, "Seed of all random numbers; default 1")
+      ->type_name("S")
+      ->transform(wholeNumberBetween(0, UINT32_MAX));
   command
       ->add_option("--gaze", options->gaze,
                    "Where the eye looks, 0,0 (top left) to 1,1; default: the scene's")
@@ -402,7 +404,7 @@ void addRender(CLI::App& program, Action& action) {
           "5% of the picture, hold the last one; default 50")
       ->type_name("MS")
       ->needs(trace)
-      ->check(CLI::Range(0.0, 10000.0).description(""));
+      ->check(numberBetween(0, 10000));
   command
       ->add_option(
           "--lens", options->lens,

@@ -66,18 +66,18 @@ void addSceneExport(CLI::App& sceneCommand, Action& action) {
       ->check(CLI::IsMember({"gltf", "mitsuba"}))
       ->type_name("FORMAT");
   auto* time = command->add_option("--time", o->time, "mitsuba: the moment to export, s; default 0")
-                   ->check(CLI::Range(0.0, 1e6))
+                   ->check(numberBetween(0, 1e6))
                    ->type_name("T");
   command->add_option("--frame", o->frame, "mitsuba: the same as a frame of `fovea render`, 42 a second")
-      ->check(CLI::Range(0, 1 << 30))
+      ->transform(wholeNumberBetween(0, 1 << 30))
       ->excludes(time)
       ->type_name("N");
   command->add_option("--size", o->size, "mitsuba: size of the picture; default 512x512")->type_name("WxH");
   command->add_option("--spp", o->samples, "mitsuba: samples a pixel; default 64")
-      ->check(CLI::Range(1, 1 << 24))
+      ->transform(wholeNumberBetween(1, 1 << 24))
       ->type_name("N");
   command->add_option("--depth", o->depth, "mitsuba: longest path; 1 emission, 2 direct light; default 4")
-      ->check(CLI::Range(1, 1000))
+      ->transform(wholeNumberBetween(1, 1000))
       ->type_name("N");
   command->add_option("--materials", o->materials, "mitsuba: diffuse (default) or full")
       ->check(CLI::IsMember({"diffuse", "full"}))

@@ -39,6 +39,34 @@ class Usage(CliTest):
             with self.subTest(arguments=arguments):
                 self.fails(USAGE, *DIRECT, *arguments, says=[arguments[0]])
 
+    def test_every_number_has_one_spelling(self):
+        """CLI11's own checks let NaN pass, and read 0x10 as 16 and 010 as 8."""
+        commands = {
+            "render": [*DIRECT, "--gaze-trace", "none.csv"], "view": ["view", "direct", "--scene", "cornellbox"],
+            "bench": ["bench", "quick"], "compare": ["compare", "a.pfm", "b.pfm"],
+            "compare-sequence": ["compare-sequence", "a", "b"],
+            "export": ["scene", "export", "cornellbox", "-o", "out"]}
+        options = {
+            "render": ["frames", "warmup", "first", "seed", "gaze-gap", "fovea-radius", "fovea-degrees",
+                       "pixels-per-degree", "jitter", "frame-limit"],
+            "view": ["frames", "seed", "port", "frame-limit", "fovea-degrees"],
+            "bench": ["seeds", "frames", "warmup", "first", "repeats", "threshold", "frame-limit", "shard"],
+            "compare": ["radius", "exposure", "error-scale", "ppd"], "compare-sequence": ["radius", "exposure"],
+            "export": ["time", "frame", "spp", "depth"]}
+        for command, names in options.items():
+            for name in names:
+                for value in ("nan", "-nan", "NAN", "inf", "-inf", "1e999", "0x10", "1 ", " 1", "1s", "+1", "01", "1,5",
+                              "", "--1"):
+                    with self.subTest(command=command, option=name, value=value):
+                        self.fails(USAGE, *commands[command], f"--{name}={value}", says=[f"--{name}"])
+            texts = self.succeeds(commands[command][0], *(["export"] if command == "export" else []), "--help").stdout
+            numbers = set(re.findall(r"--([a-z-]+) (?:N|S|MS|P|X|R|E|T)(?=\s)", texts)) - {"set"}
+            self.assertLessEqual(numbers, set(names) | set(options["render"]), "an option is not tested")
+        self.assertIn("from 0 to 60", self.fails(USAGE, *DIRECT, "--fovea-degrees", "nan").stderr)
+        self.assertIn("from 1 to 10000000", self.fails(USAGE, *DIRECT, "--frames", "0x10").stderr)
+        self.fails(USAGE, *DIRECT, "--frames", "1.5", says=["whole number"])
+        self.succeeds(*DIRECT, "--frames", "1e0", "--seed", "4294967295", "-o", "a.png")
+
     def test_gaze(self):
         for gaze in ("0.5", "2,0", "-0.1,0.5", "nan,0", "0.5,0.5,0.5", "a,b", ","):
             with self.subTest(gaze=gaze):
@@ -83,6 +111,39 @@ class Inputs(CliTest):
     def test_broken_json_names_the_place(self):
         self.write("graph.json", '{\n  "passes": {\n    "a": ,\n  }\n}\n')
         self.fails(BAD_INPUT, "check", "graph.json", says=["graph.json:3:"])
+
+    def test_files_as_windows_saves_them(self):
+        """With a byte-order mark and CRLF."""
+        def windows(name, text):
+            (self.folder / name).parent.mkdir(exist_ok=True)
+            (self.folder / name).write_bytes(b"\xef\xbb\xbf" + text.replace("\n", "\r\n").encode())
+        own = SOURCE / "samples/own_pass/files"
+        windows("graph.json", (own / "outlined.json").read_text())
+        for file in (own / "passes").iterdir():
+            windows(f"passes/{file.name}", file.read_text())
+        windows("scene.json", '{\n  "models": [{ "builtin": "cornellbox" }],\n  "gaze": "gaze.csv"\n}\n')
+        windows("gaze.csv", "t;x;y\n0;0,25;0,5\n")
+        self.succeeds("render", "graph.json", "--scene", "scene.json", *SMALL, "-o", "a.png")
+        self.model([0, 0, 0, 1, 0, 0, 0, 1, 0])
+        windows("model.gltf", (self.folder / "model.gltf").read_text())
+        self.succeeds("scene", "info", "model.gltf")
+        for name in ("graph.json", "scene.json"):
+            text = (self.folder / name).read_bytes().decode("utf-8-sig")
+            (self.folder / name).write_bytes(text.encode("utf-16"))
+            self.fails(BAD_INPUT, "render", "graph.json", "--scene", "scene.json", *SMALL, says=[name, "UTF-16"])
+            windows(name, text)
+
+    def test_whole_numbers(self):
+        for value in (500, 500.0, 5e2):
+            self.write("graph.json", {"extends": "ir_1000.json", "parameters": {"vpl_count": value}})
+            self.succeeds("check", "graph.json")
+        for value in ("500.0", "5e2", "0.5e3"):
+            self.succeeds("check", "ir_1000", "--set", f"vpl_count={value}")
+        for value in (500.5, -1, 1e30, 2 ** 32, "500", True):
+            self.write("graph.json", {"extends": "ir_1000.json", "parameters": {"vpl_count": value}})
+            self.fails(BAD_INPUT, "check", "graph.json", says=["a whole number from 1 to 65536"])
+        for value in ("nan", "0x10", "+500", "0500", " 500", "500 ", "inf", ""):
+            self.fails(BAD_INPUT, "check", "ir_1000", "--set", f"vpl_count={value}", says=["is a number, not"])
 
     def test_all_mistakes_of_a_graph_at_once(self):
         self.write("graph.json", {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "framework/scene/file/reader.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/motion/motion.h"
 #include "scene_support.h"
@@ -80,6 +81,48 @@ TEST(Gaze, ATableSaysWhichLineIsWrong) {
   EXPECT_THAT(error(""), HasSubstr("no header line"));
   EXPECT_THAT(error("root:secret:20228:0:99999:7:::\n"),
               AllOf(HasSubstr("t,x,y,valid"), Not(HasSubstr("secret"))));
+}
+
+TEST(Gaze, TablesAsOtherProgramsWriteThem) {
+  for (const std::string table :
+       {"\xEF\xBB\xBFt,x,y,valid\r\n0,0.25,0.5,1\r\n0.1,,,0\r\n", "t;x;y;valid\r0;0.25;0.5;1\r0.1;;;0\r",
+        "sep=;\r\nT;X;Y;Valid\r\n0,0;0,25;0,5;1\r\n0,1;;;0\r\n",
+        "t\tx\ty\tvalid\n0\t0.25\t.5\t1\n0.1\t\t\t0\n",
+        "\"t\",\"x\",\"y\",\"valid\"\n\"0\",\"0,25\",\"0,5\",\"1\"\n\"0,1\",\"\",\"\",\"0\"\n",
+        "\xEF\xBB\xBF\"VALID\" ; \"Y\" ; \"X\" ; \"T\";;\n1;0.5;0.25;0;;\n;;;;;\n0;;;0.1;;"}) {
+    const std::vector<GazeSample> samples = parseGazeCsv(table, "g.csv");
+    ASSERT_EQ(samples.size(), 2u) << table;
+    EXPECT_EQ(samples[0].position, glm::vec2(0.25f, 0.5f)) << table;
+    EXPECT_EQ(samples[0].time, 0) << table;
+    EXPECT_EQ(samples[1].time, 0.1f) << table;
+    EXPECT_FALSE(samples[1].valid) << table;
+  }
+}
+
+TEST(Gaze, WhatIsAmbiguousInTablesIsNamed) {
+  const auto error = [](const std::string& text) {
+    return test::errorOf([&] { parseGazeCsv(text, "g.csv"); });
+  };
+  EXPECT_THAT(error("t,x,y\n0,0,0,25,0,5\n"), AllOf(HasSubstr("g.csv:2"), HasSubstr("semicolons")));
+  EXPECT_THAT(error("t;x;y\n0,5;0,25;0,5\n1.5;0,25;0,5\n"),
+              AllOf(HasSubstr("g.csv:3"), HasSubstr("decimal commas and decimal points")));
+  EXPECT_THAT(error("t;x;y\n1,000.5;0.25;0.5\n"), AllOf(HasSubstr("g.csv:2"), HasSubstr("`t` is `1,000.5`")));
+  EXPECT_THAT(error("t x y\n0 0.5 0.5\n"), HasSubstr("g.csv:1"));
+  EXPECT_THAT(error(std::string("\xFF\xFEt\0,\0x\0", 8)), HasSubstr("UTF-16"));
+  EXPECT_THAT(error("t,T,x,y\n"), HasSubstr("`t` is there twice"));
+  for (const char* number : {"0x1", "1e", "nan", "inf", "+0.5", "0.5s", "00.5"})
+    EXPECT_THAT(error(std::string("t,x,y\n0,0.5,") + number + "\n"), HasSubstr("from 0 to 1")) << number;
+}
+
+TEST(Gaze, TablesWithoutAValidSampleAreRefused) {
+  const auto error = [](const std::string& text) {
+    return test::errorOf([&] { parseGazeCsv(text, "g.csv"); });
+  };
+  EXPECT_THAT(error("t,x,y\n"), HasSubstr("no samples"));
+  EXPECT_THAT(error("t,x,y,valid\n0,0.5,0.5,0\n1,,,0\n"), HasSubstr("no valid sample"));
+  Diagnostics messages;
+  readGaze(json::parse(R"([{ "t": 0, "valid": false }])", "s.json"), messages);
+  EXPECT_THAT(messages.list().at(0).message, HasSubstr("no sample of the gaze is valid"));
 }
 
 // The pixel at the rim of the disc is seen at the given angle.

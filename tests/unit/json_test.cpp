@@ -128,8 +128,25 @@ INSTANTIATE_TEST_SUITE_P(
                     Bad{"[\"\\x\"]", "1:2", "forbidden character after backslash"},
                     Bad{"[\"\\ud800\"]", "1:2", "surrogate"}, Bad{"[\"\xff\"]", "1:2", "UTF-8"},
                     Bad{"// no comments\n{}", "1:1", "invalid literal"},
-                    Bad{"\xEF\xBB\xBF{}", "1:1", "byte-order mark"},
+                    Bad{"\xEF\xBB\xBF\xEF\xBB\xBF{}", "1:1", "two byte-order marks"},
+                    Bad{"\xFF\xFE{", "1:1", "UTF-16"}, Bad{"\xFE\xFF", "1:1", "UTF-16"},
+                    Bad{"\xEF\xBB\xBF{\"a\": 01}", "1:8", "expected '}'"},
                     Bad{"{\"a\":1,\n\"b\":2, \"a\":3}", "2:8", "occurs twice"}));
+
+TEST(Json, AByteOrderMarkAndCrLfAreNoPartOfTheText) {
+  const Value v = parse("\xEF\xBB\xBF{\r\n \"a\": [1]\r\n}\r\n", "f");
+  EXPECT_EQ(v.where.column, 1);
+  EXPECT_EQ(v.find("a")->where.line, 2);
+  EXPECT_EQ(v.find("a")->where.column, 7);
+}
+
+TEST(Json, WholeNumbersHoweverTheyAreWritten) {
+  for (const char* text : {"500", "500.0", "5e2", "0.5E3"}) EXPECT_EQ(parse(text, "f").whole(), 500) << text;
+  EXPECT_EQ(parse("-0.0", "f").whole(), 0);
+  EXPECT_EQ(parse("9007199254740993", "f").whole(), 9007199254740993);
+  for (const char* text : {"500.5", "1e30", "-1e-9", "\"500\"", "true", "null", "[5]"})
+    EXPECT_FALSE(parse(text, "f").whole()) << text;
+}
 
 TEST(Json, ANulByteIsNotTheEnd) {
   const std::vector<std::string> errors = errorsOf(std::string("{}\0 anything", 12));

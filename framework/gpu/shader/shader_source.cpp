@@ -6,6 +6,7 @@
 
 #include "fovea/error.h"
 #include "framework/base/files.h"
+#include "framework/base/text_file.h"
 
 namespace fovea::gpu {
 namespace {
@@ -17,7 +18,9 @@ std::string readText(const std::filesystem::path& path) {
   std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   noteRead(path);
   if (!in) throw Error(ExitCode::BadInput, "cannot read shader file `" + path.string() + "`");
-  return text;
+  if (isUtf16(text))
+    throw Error(ExitCode::BadInput, "the shader file `" + path.string() + "` is UTF-16", "save it as UTF-8");
+  return std::string(withoutByteOrderMark(text));
 }
 
 // Relative to the current folder if the file lies below it, so that messages stay readable.

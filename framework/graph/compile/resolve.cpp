@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "framework/base/number.h"
 #include "framework/graph/compile/expand.h"
 
 namespace fovea::graph {
@@ -135,7 +135,7 @@ ParameterDescription readOverride(Expansion& all, const Expansion::PendingOverri
   if (!current || current->isString()) {
     value.type = Type::String;
     value.string = text;
-  } else if (!readTyped(text, current->type, value) || !std::isfinite(value.real)) {
+  } else if (!readTyped(text, current->type, value)) {
     // The value that it should have replaced stays, so that no second error follows.
     const json::Position where = value.where;
     value = *current;
@@ -461,15 +461,11 @@ bool readTyped(const std::string& text, json::Value::Type type, json::Value& out
     out.type = Type::Bool;
     return true;
   }
-  const char *begin = text.data(), *end = begin + text.size();
-  if (const auto r = std::from_chars(begin, end, out.integer); r.ec == std::errc() && r.ptr == end) {
-    out.type = Type::Int;
-    out.real = static_cast<double>(out.integer);
-    return true;
-  }
-  const auto r = std::from_chars(begin, end, out.real);
-  if (r.ec != std::errc() || r.ptr != end) return false;
+  const std::optional<double> number = parseDecimal(text);
+  if (!number) return false;
   out.type = Type::Real;
+  out.real = *number;
+  if (const std::optional<int64_t> whole = out.whole()) out.type = Type::Int, out.integer = *whole;
   return true;
 }
 

@@ -1,11 +1,12 @@
 // Reads gaze samples from a scene file, or from a table as written by eye trackers.
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <map>
 
 #include "framework/base/files.h"
+#include "framework/base/number.h"
+#include "framework/base/text_file.h"
 #include "framework/scene/file/reader.h"
 #include "framework/scene/motion/motion.h"
 
@@ -23,24 +24,44 @@ std::optional<glm::vec2> readEye(ObjectReader& r, std::string_view key) {
 }
 
 std::string_view trimmed(std::string_view s) {
-  const size_t first = s.find_first_not_of(" \t\r"), last = s.find_last_not_of(" \t\r");
+  const size_t first = s.find_first_not_of(" \t"), last = s.find_last_not_of(" \t");
   return first == s.npos ? std::string_view() : s.substr(first, last - first + 1);
 }
 
-// Takes what precedes the next `separator` off the front of `rest`, and the separator with it; all of it if there is
-// none.
-std::string_view taken(std::string_view& rest, char separator) {
-  const std::string_view front = rest.substr(0, rest.find(separator));
-  rest.remove_prefix(std::min(rest.size(), front.size() + 1));
-  return front;
+// Takes a line off the front of `rest`, with its end: CR, LF or both.
+std::string_view takenLine(std::string_view& rest) {
+  const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
+  rest.remove_prefix(line.size());
+  rest.remove_prefix(rest.starts_with("\r\n") ? 2 : std::min<size_t>(rest.size(), 1));
+  return line;
 }
 
-std::vector<std::string> cells(std::string_view line) {
-  std::vector<std::string> list;
-  const bool lastEmpty = line.ends_with(',');
-  while (!line.empty()) list.emplace_back(trimmed(taken(line, ',')));
-  if (lastEmpty) list.emplace_back();
+// The cells of a line (RFC 4180, with any separator): one in quotes may contain separators, and quotes twice.
+std::vector<std::string> cells(std::string_view line, char separator) {
+  std::vector<std::string> list(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == separator && !quoted)
+      list.emplace_back();
+    else
+      list.back() += c;
+  }
+  for (std::string& cell : list) cell = trimmed(cell);
   return list;
+}
+
+// What separates the columns of a header: the first comma, semicolon or tab. Without one there is one column.
+char separatorOf(std::string_view header) {
+  const size_t at = header.find_first_of(",;\t");
+  return at == header.npos ? ',' : header[at];
+}
+
+std::string lowerCase(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  return text;
 }
 
 const std::vector<std::string> kColumns = {"t", "x", "y", "valid", "left_x", "left_y", "right_x", "right_y"};
@@ -52,10 +73,16 @@ class CsvReader {
   explicit CsvReader(const std::string& file) : file_(file) {}
 
   std::vector<GazeSample> read(std::string_view rest) {
+    if (isUtf16(rest)) {
+      mistakeAt(1, "the file is UTF-16", "save it as UTF-8");
+      errors_.throwIfErrors();
+    }
+    rest = withoutByteOrderMark(rest);
     while (!rest.empty()) {
       ++line_;
-      const std::string_view text = trimmed(taken(rest, '\n'));
+      const std::string_view text = trimmed(takenLine(rest));
       if (text.empty() || text[0] == '#') continue;
+      if (line_ == 1 && text.starts_with("sep=")) continue;  // for spreadsheets; the header says the same
       if (columns_.empty())
         header(text);
       else
@@ -63,6 +90,11 @@ class CsvReader {
       if (errors_.list().size() >= kMaxMistakes) break;
     }
     if (columns_.empty()) mistakeAt(1, "the file has no header line", "begin it with t,x,y,valid");
+    errors_.throwIfErrors();
+    const auto valid = [](const GazeSample& g) { return g.valid; };
+    if (std::none_of(samples_.begin(), samples_.end(), valid))
+      mistakeAt(1, samples_.empty() ? "the table has no samples" : "the table has no valid sample",
+                "give at least one sample where the eye is open, or leave the table out");
     errors_.throwIfErrors();
     return std::move(samples_);
   }
@@ -73,7 +105,9 @@ class CsvReader {
   }
 
   void header(std::string_view text) {
-    columns_ = cells(text);
+    separator_ = separatorOf(text);
+    for (const std::string& name : cells(text, separator_)) columns_.push_back(lowerCase(name));
+    while (columns_.size() > 1 && columns_.back().empty()) columns_.pop_back();
     // The content of a file of another kind must not be shown.
     if (std::find(columns_.begin(), columns_.end(), "t") == columns_.end()) {
       mistakeAt(1, "the file does not begin as a table of gazes, with a column `t`",
@@ -103,10 +137,12 @@ class CsvReader {
                                double min, double max) {
     const auto it = row.find(name);
     if (it == row.end() || it->second.empty()) return std::nullopt;
-    double value = 0;
-    const char *begin = it->second.data(), *end = begin + it->second.size();
-    const auto [rest, error] = std::from_chars(begin, end, value);
-    if (error == std::errc() && rest == end && value >= min && value <= max) return value;
+    std::string text = it->second;
+    const size_t comma = text.find(',');
+    (comma == text.npos ? points_ : commas_) |= text.find_first_of(".,") != text.npos;
+    if (comma != text.npos) text[comma] = '.';
+    const std::optional<double> value = parseDecimal(text);
+    if (value && *value >= min && *value <= max) return value;
     mistakeAt(1, "`" + name + "` is `" + it->second + "`: expected a number from " +
                      std::to_string(int(min)) + " to " + std::to_string(int(max)));
     return std::nullopt;
@@ -120,10 +156,16 @@ class CsvReader {
   }
 
   void row(std::string_view text) {
-    const std::vector<std::string> values = cells(text);
+    std::vector<std::string> values = cells(text, separator_);
+    // Spreadsheets fill lines up with empty cells.
+    while (values.size() > columns_.size() && values.back().empty()) values.pop_back();
+    if (std::all_of(values.begin(), values.end(), [](const std::string& v) { return v.empty(); })) return;
     if (values.size() != columns_.size())
       return mistakeAt(
-          1, std::to_string(values.size()) + " values in " + std::to_string(columns_.size()) + " columns");
+          1, std::to_string(values.size()) + " values in " + std::to_string(columns_.size()) + " columns",
+          separator_ == ',' && values.size() > columns_.size()
+              ? "write numbers with a decimal point, or separate columns by semicolons"
+              : "");
     std::map<std::string, std::string> row;
     for (size_t i = 0; i < values.size(); ++i) row[columns_[i]] = values[i];
     const size_t before = errors_.list().size();
@@ -134,6 +176,11 @@ class CsvReader {
     const auto position = g.valid ? eye(row, "x", "y") : glm::vec2(0.5f);
     if (g.valid) g.left = eye(row, "left_x", "left_y"), g.right = eye(row, "right_x", "right_y");
     if (errors_.list().size() > before) return;
+    if (points_ && commas_) {
+      points_ = false;  // told once
+      return mistakeAt(1, "the table has decimal commas and decimal points",
+                       "write all numbers the same way, without separators of thousands");
+    }
     if (!t || !position) return mistakeAt(1, "a sample needs t, and a valid one x and y");
     g.time = float(*t);
     g.position = *position;
@@ -147,6 +194,8 @@ class CsvReader {
   std::vector<GazeSample> samples_;
   Diagnostics errors_;
   int line_ = 0;
+  char separator_ = ',';
+  bool points_ = false, commas_ = false;  // whether numbers had decimal points, and decimal commas
 };
 
 }  // namespace
@@ -167,6 +216,10 @@ std::vector<GazeSample> readGaze(const json::Value& list, Diagnostics& errors) {
     r.finish();
     samples.push_back(g);
   }
+  const auto valid = [](const GazeSample& g) { return g.valid; };
+  if (!samples.empty() && std::none_of(samples.begin(), samples.end(), valid))
+    errors.error(list.where.location(), "gaze", "no sample of the gaze is valid",
+                 "give at least one sample where the eye is open, or leave `gaze` out");
   return samples;
 }
 

@@ -74,19 +74,23 @@ void addView(CLI::App& program, Action& action) {
       ->type_name("SCENE");
   addEnvironmentOption(*command, settings.environment);
   command->add_option("--size", options->size, "Picture size; default 512x512")->type_name("WxH");
-  command->add_option("--seed", settings.seed, "Seed of all random numbers; default 1")->type_name("S");
+  command->add_option("--seed", settings.seed, "Seed of all random numbers; default 1")
+      ->type_name("S")
+      ->transform(wholeNumberBetween(0, UINT32_MAX));
   command
       ->add_option("--frames", options->viewer.frames,
                    "Render so many frames, whether somebody looks or not, and freeze")
       ->type_name("N")
-      ->check(CLI::Range(1u, 10'000'000u).description(""));
+      ->transform(wholeNumberBetween(1, 10'000'000));
   command
       ->add_option(
           "--host", options->host,
           "Name or address of this machine to listen on; default 127.0.0.1, which\nonly this machine "
           "reaches (elsewhere use `ssh -L PORT:127.0.0.1:PORT`)")
       ->type_name("HOST");
-  command->add_option("--port", options->port, "Port to listen on; default 0, any free one")->type_name("P");
+  command->add_option("--port", options->port, "Port to listen on; default 0, any free one")
+      ->type_name("P")
+      ->transform(wholeNumberBetween(0, UINT16_MAX));
   command
       ->add_option("--tev", options->viewer.tev,
                    "Send a picture of every frame to the image viewer tev, which listens there")
