@@ -30,7 +30,8 @@ using Accept = std::function<void(uint32_t, uint32_t, size_t)>;
 // EXR holds 32-bit floats. PNG holds 8 bits per channel, values from 0 to 1 and alpha that is not premultiplied.
 struct Library {
   void (*write)(const std::filesystem::path& file, const Pixels& pixels);
-  Pixels (*read)(const std::filesystem::path& file, const Accept& accept);
+  // `part`: of an EXR file; 0 for any other.
+  Pixels (*read)(const std::filesystem::path& file, uint32_t part, const Accept& accept);
   Image8 (*decode8)(const uint8_t* bytes, size_t size, const Accept& accept);
 };
 

@@ -71,10 +71,11 @@ void write(const std::filesystem::path& file, const Pixels& pixels) {
   if (!written || !closed || output->has_error()) fail(output->geterror());
 }
 
-Pixels read(const std::filesystem::path& file, const Accept& accept) {
+Pixels read(const std::filesystem::path& file, uint32_t part, const Accept& accept) {
   char begin[4] = {};
   std::ifstream(file, std::ios::binary).read(begin, sizeof(begin));
   const auto input = open({begin, sizeof(begin)}, file.string(), readConfig());
+  if (!input->seek_subimage(int(part), 0)) fail(input->geterror());
   const OIIO::ImageSpec spec = input->spec();
   checkSize(spec);
   accept(uint32_t(spec.width), uint32_t(spec.height), size_t(spec.nchannels));
@@ -83,7 +84,7 @@ Pixels read(const std::filesystem::path& file, const Accept& accept) {
   pixels.height = uint32_t(spec.height);
   pixels.channels = spec.channelnames;
   pixels.data.resize(size_t(spec.width) * spec.height * spec.nchannels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data.data()))
+  if (!input->read_image(int(part), 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data.data()))
     fail(input->geterror());
   for (const OIIO::ParamValue& value : spec.extra_attribs)
     if (value.type() == OIIO::TypeDesc::STRING) pixels.metadata[value.name().string()] = value.get_string();

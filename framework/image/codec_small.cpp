@@ -115,10 +115,10 @@ Pixels readExr(const std::filesystem::path& file, const Accept& accept) {
   checkSize(int64_t(window.max_x) - window.min_x + 1, int64_t(window.max_y) - window.min_y + 1);
   accept(uint32_t(int64_t(window.max_x) - window.min_x + 1),
          uint32_t(int64_t(window.max_y) - window.min_y + 1), size_t(exr.header.num_channels));
-  for (int c = 0; c < exr.header.num_channels; ++c) {
-    if (exr.header.pixel_types[c] == TINYEXR_PIXELTYPE_UINT) fail("its integer channels are not supported");
-    exr.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
-  }
+  for (int c = 0; c < exr.header.num_channels; ++c)
+    if (exr.header.pixel_types[c] !=
+        TINYEXR_PIXELTYPE_UINT)  // which it cannot convert; they are left out later
+      exr.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
   if (LoadEXRImageFromMemory(&exr.image, &exr.header, bytes.data(), bytes.size(), &message) !=
       TINYEXR_SUCCESS)
     fail(reasonOf(message));
@@ -237,7 +237,7 @@ Image8 decode8(const uint8_t* bytes, size_t size, const Accept& accept) {
 }
 
 // The format is recognised by content; the name may be anything.
-Pixels read(const std::filesystem::path& file, const Accept& accept) {
+Pixels read(const std::filesystem::path& file, uint32_t, const Accept& accept) {
   uint8_t magic[8] = {};
   std::ifstream(file, std::ios::binary).read(reinterpret_cast<char*>(magic), sizeof(magic));
   if (png_sig_cmp(magic, 0, sizeof(magic)) == 0) return readPng(file, accept);

@@ -196,6 +196,61 @@ std::string whyForged(std::istream& exr) {
   return {};
 }
 
+namespace {
+
+Window windowOf(std::istream& in) {
+  int64_t corners[4] = {};
+  for (int64_t& corner : corners) corner = int32_t(littleEndian(in));
+  return {int32_t(corners[0]), int32_t(corners[1]),
+          uint32_t(std::max<int64_t>(corners[2] - corners[0] + 1, 0)),
+          uint32_t(std::max<int64_t>(corners[3] - corners[1] + 1, 0))};
+}
+
+void addTo(ExrPart& part, const std::string& name, uint64_t size, std::istream& in) {
+  if (name == "displayWindow" || name == "dataWindow") {
+    (name == "dataWindow" ? part.data : part.display) = windowOf(in);
+  } else if (name == "name" || name == "type") {
+    std::string text(size, ' ');
+    in.read(text.data(), std::streamsize(size));
+    if (name == "name")
+      part.name = text;
+    else
+      part.deep |= text.starts_with("deep");
+  } else if (name == "channels") {
+    for (std::string channel; std::getline(in, channel, '\0') && !channel.empty();) {
+      const bool integers = littleEndian(in) == 0;
+      in.ignore(4);  // linearity, and three reserved bytes
+      const auto x = int32_t(littleEndian(in)), y = int32_t(littleEndian(in));
+      part.channels.push_back({channel, integers, x, y});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<ExrPart> exrParts(std::istream& exr) {
+  exr.clear();
+  exr.seekg(4);
+  const uint32_t flags = littleEndian(exr);
+  const bool severalParts = (flags & 0x1000u) != 0, deep = (flags & 0x800u) != 0;
+  std::vector<ExrPart> parts;
+  do {
+    ExrPart part;
+    part.deep = deep && !severalParts;
+    for (std::string name, type; std::getline(exr, name, '\0') && !name.empty();) {
+      std::getline(exr, type, '\0');
+      const uint64_t size = littleEndian(exr);
+      if (!exr) return {};  // it ends here
+      const std::streamoff begin = exr.tellg();
+      addTo(part, name, size, exr);
+      exr.clear();
+      exr.seekg(begin + std::streamoff(size));
+    }
+    parts.push_back(std::move(part));
+  } while (severalParts && exr.peek() > 0);
+  return parts;
+}
+
 std::string whyTooPlain(uint64_t pixels, uint64_t bytes) {
   constexpr uint64_t kPlainPixels = uint64_t(1) << 26, kPixelsOfByte = 64;
   if (pixels <= kPlainPixels || (pixels - kPlainPixels) / kPixelsOfByte <= bytes) return {};

@@ -6,6 +6,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
+
+#include "fovea/image.h"
 
 namespace fovea::image {
 
@@ -25,5 +28,19 @@ std::string whyTooPlain(uint64_t pixels, uint64_t bytes);
 // of more than codec::kMaxSide pixels or blocks of more than 32 MiB; else "". OpenEXR reserves and clears what a
 // header claims, up to several GiB, before it notices. What else is wrong with the file is left to OpenEXR.
 std::string whyForged(std::istream& exr);
+
+// What the header of an EXR file says of a part, for which whyForged() has no objection.
+struct ExrPart {
+  struct Channel {
+    std::string name;
+    bool integers = false;
+    int32_t xSampling = 1, ySampling = 1;  // pixels for each sample
+  };
+  std::string name;  // "" if the only part has none
+  Window display, data;
+  std::vector<Channel> channels;
+  bool deep = false;
+};
+std::vector<ExrPart> exrParts(std::istream& exr);
 
 }  // namespace fovea::image

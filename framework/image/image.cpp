@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <numeric>
 #include <stdexcept>
@@ -120,17 +121,20 @@ int channelRank(const std::string& name) {
   return name.size() == 1 && rank != std::string_view::npos ? int(rank) : 100;
 }
 
-File toFile(const Pixels& pixels) {
-  File file;
+// Appends the layers of one part, or of the whole file. `nameOf` gives a layer of the file its name.
+void addLayers(File& file, const Pixels& pixels,
+               const std::function<std::string(const std::string&)>& nameOf) {
+  const size_t first = file.layers.size();
   std::vector<std::vector<std::pair<std::string, size_t>>> groups;  // per layer: channel name, index
   for (size_t c = 0; c < pixels.channels.size(); ++c) {
     const std::string& full = pixels.channels[c];
     const size_t dot = full.rfind('.');
-    const std::string layer = dot == std::string::npos ? "" : full.substr(0, dot);
+    const std::string layer = nameOf(dot == std::string::npos ? "" : full.substr(0, dot));
     const std::string channel = dot == std::string::npos ? full : full.substr(dot + 1);
     size_t g = 0;
-    while (g < file.layers.size() && file.layers[g].name != layer) ++g;
-    if (g == file.layers.size()) {
+    while (g < groups.size() && file.layers[first + g].name != layer) ++g;
+    if (g == groups.size()) {
+      if (file.findLayer(layer)) throw std::runtime_error("two of its parts have a layer `" + layer + "`");
       file.layers.push_back({layer, {}});
       groups.emplace_back();
     }
@@ -142,15 +146,16 @@ File toFile(const Pixels& pixels) {
       return channelRank(a.first) < channelRank(b.first);
     });
     const size_t channels = groups[g].size();
-    Image image{pixels.width, pixels.height, uint32_t(channels), std::vector<float>(count * channels)};
-    for (size_t c = 0; c < channels; ++c)
+    Layer& layer = file.layers[first + g];
+    layer.image = {pixels.width, pixels.height, uint32_t(channels), std::vector<float>(count * channels)};
+    for (size_t c = 0; c < channels; ++c) {
+      layer.channels.push_back(groups[g][c].first);
       for (size_t i = 0; i < count; ++i)
-        image.data[i * channels + c] = pixels.data[i * pixels.channels.size() + groups[g][c].second];
-    file.layers[g].image = std::move(image);
+        layer.image.data[i * channels + c] = pixels.data[i * pixels.channels.size() + groups[g][c].second];
+    }
   }
   for (const auto& [key, value] : pixels.metadata)
-    if (key.starts_with(kPrefix)) file.metadata[key.substr(kPrefix.size())] = value;
-  return file;
+    if (key.starts_with(kPrefix)) file.metadata.emplace(key.substr(kPrefix.size()), value);
 }
 
 // Rounds 0..1 to the nearest of 256 steps. A pixel with a NaN becomes magenta, so that a defect is visible.
@@ -195,7 +200,7 @@ void writeChecked(const fs::path& temporary, const std::string& extension, const
   const bool pfm = extension == "pfm";
   pfm ? writePfm(temporary, pixels) : codec::library().write(temporary, pixels);
   const Pixels back =
-      pfm ? readPfm(temporary) : codec::library().read(temporary, [](uint32_t, uint32_t, size_t) {});
+      pfm ? readPfm(temporary) : codec::library().read(temporary, 0, [](uint32_t, uint32_t, size_t) {});
   const std::string part = difference(pixels, back, extension == "png", !pfm);
   if (!part.empty()) throw std::runtime_error(part + " reads back different from what was written");
 }
@@ -210,10 +215,15 @@ std::string withDiskSpace(const std::string& reason, const fs::path& file, size_
 
 }  // namespace
 
-const Image* File::find(std::string_view layer) const {
+const Layer* File::findLayer(std::string_view layer) const {
   for (const Layer& l : layers)
-    if (l.name == layer) return &l.image;
+    if (l.name == layer) return &l;
   return nullptr;
+}
+
+const Image* File::find(std::string_view layer) const {
+  const Layer* found = findLayer(layer);
+  return found ? &found->image : nullptr;
 }
 
 std::vector<std::string> writableExtensions() {
@@ -290,14 +300,100 @@ codec::Accept acceptor(const fs::path& file) {
   };
 }
 
+bool startsAsHdr(std::istream& stream) {
+  stream.clear();
+  stream.seekg(0);
+  return stream.get() == '#' && stream.get() == '?';
+}
+
+// Why the pixels of a part cannot be read as an image, or "".
+std::string whyUnread(const ExrPart& part) {
+  if (part.deep) return "it is deep: its pixels have several samples each";
+  for (const ExrPart::Channel& c : part.channels) {
+    if (c.xSampling != 1 || c.ySampling != 1)
+      return "its channel `" + c.name + "` has one sample for " + std::to_string(c.xSampling) + "x" +
+             std::to_string(c.ySampling) + " pixels";
+    const std::string last = c.name.substr(c.name.rfind('.') + 1);
+    if (last == "RY" || last == "BY") return "it has luminance and chroma in place of red, green and blue";
+  }
+  return {};
+}
+
+// Moves the channels that hold integers, which identify things and are no light, to `unread`.
+void leaveOutIntegers(Pixels& pixels, const ExrPart& part, const std::function<void(std::string)>& leaveOut) {
+  const size_t count = pixels.channels.size();
+  std::vector<size_t> kept;
+  for (size_t c = 0; c < count; ++c) {
+    const auto same = [&](const ExrPart::Channel& channel) { return channel.name == pixels.channels[c]; };
+    const auto found = std::find_if(part.channels.begin(), part.channels.end(), same);
+    if (found != part.channels.end() && found->integers)
+      leaveOut(found->name);
+    else
+      kept.push_back(c);
+  }
+  if (kept.size() == count) return;
+  const size_t texels = size_t(pixels.width) * pixels.height;
+  for (size_t i = 0; i < texels; ++i)
+    for (size_t k = 0; k < kept.size(); ++k)
+      pixels.data[i * kept.size() + k] = pixels.data[i * count + kept[k]];
+  pixels.data.resize(texels * kept.size());
+  std::vector<std::string> names;
+  for (const size_t c : kept) names.push_back(std::move(pixels.channels[c]));
+  pixels.channels = std::move(names);
+}
+
+// The name of a layer of one of several parts.
+std::string nameInPart(const std::string& part, const std::string& layer) {
+  if (layer.empty()) return part;
+  return layer == part || layer.starts_with(part + ".") ? layer : part + "." + layer;
+}
+
+File readExr(const fs::path& path, const std::vector<ExrPart>& parts) {
+  File file;
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const ExrPart& part = parts[i];
+    const auto nameOf = [&](const std::string& layer) {
+      return parts.size() > 1 ? nameInPart(part.name, layer) : layer;
+    };
+    if (const std::string reason = whyUnread(part); !reason.empty()) {
+      file.unread.push_back({part.name, reason});
+      continue;
+    }
+    Pixels pixels = codec::library().read(path, uint32_t(i), acceptor(path));
+    leaveOutIntegers(pixels, part, [&](const std::string& channel) {
+      const size_t dot = channel.rfind('.');
+      const std::string layer = nameOf(dot == std::string::npos ? "" : channel.substr(0, dot));
+      file.unread.push_back(
+          {layer.empty() ? channel : layer, "its channel `" + channel + "` holds integers"});
+    });
+    const size_t first = file.layers.size();
+    addLayers(file, pixels, nameOf);
+    for (size_t l = first; l < file.layers.size(); ++l) {
+      file.layers[l].display = part.display;
+      file.layers[l].data = {part.data.x, part.data.y, pixels.width, pixels.height};
+    }
+  }
+  if (file.layers.empty()) cannotRead(path.string(), file.unread.at(0).reason);
+  file.radiance = true;
+  return file;
+}
+
 }  // namespace
 
 File read(const fs::path& file) {
   checkReadable(file);
   try {
-    if (std::ifstream stream(file, std::ios::binary); startsAsExr(stream))
+    std::ifstream stream(file, std::ios::binary);
+    if (startsAsExr(stream)) {
       if (const std::string reason = whyForged(stream); !reason.empty()) cannotRead(file.string(), reason);
-    return toFile(extensionOf(file) == "pfm" ? readPfm(file) : codec::library().read(file, acceptor(file)));
+      if (const std::vector<ExrPart> parts = exrParts(stream); !parts.empty()) return readExr(file, parts);
+    }
+    const bool pfm = extensionOf(file) == "pfm";
+    File plain;
+    addLayers(plain, pfm ? readPfm(file) : codec::library().read(file, 0, acceptor(file)),
+              [](const std::string& layer) { return layer; });
+    plain.radiance = pfm || startsAsHdr(stream);
+    return plain;
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

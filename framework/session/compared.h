@@ -25,18 +25,20 @@ struct Compared {
   std::optional<image::Picture>
       perfectIndirect;  // direct light of the picture, indirect light of the reference
   image::Disc fovea;
-  glm::uvec2 size{0};
+  image::Window display, window;  // of the whole picture, and of what is compared of it
   // How the files were read; `layer` is empty for pictures without layers.
   std::string layer;
   float exposure = 1, radius = 0;  // radius: image widths
   glm::vec2 gaze{0};
 };
 
-// Floating-point files (EXR, PFM) hold radiance, others display values. Layer, exposure, gaze and radius come from
-// the options, else from the metadata of the picture, else from those of the reference; the defaults are `radiance`
-// (or the only layer), 1, the middle and kFoveaRadius. `halves` names two files or none; without them the layers
-// `half_a` and `half_b` of the reference are used if they exist. Throws Error(BadInput) on missing layers, different
-// sizes, NaN or infinity, contradicting exposures and unreadable metadata, and Error(Usage) on invalid options.
+// Floating-point files (EXR, PFM, HDR) hold radiance, others display values. Pictures with different data windows are
+// compared where both have displayed pixels, which a warning tells; their display windows must be the same. Layer,
+// exposure, gaze and radius come from the options, else from the metadata of the picture, else from those of the
+// reference; the defaults are `radiance` (or the only layer), 1, the middle and kFoveaRadius. `halves` names two files
+// or none; without them the layers `half_a` and `half_b` of the reference are used if they exist. Throws
+// Error(BadInput) on missing layers, different sizes, channels that are no colours, NaN or infinity, contradicting
+// exposures and unreadable metadata, and Error(Usage) on invalid options.
 Compared loadCompared(const std::string& image, const std::string& reference,
                       const std::vector<std::string>& halves, const CompareOptions& options);
 

@@ -164,6 +164,9 @@ ExitCode compareSequence(const SequenceOptions& options) {
     if (comparison.frames() > 0 && now.exposure != last.exposure)
       bad(fmt::format("the exposure changes from {} to {} at `{}`", last.exposure, now.exposure, file),
           "changes compare only at one exposure: give --exposure");
+    if (comparison.frames() > 0 && (now.window != last.window || now.layer != last.layer))
+      bad(fmt::format("from `{}` on, the frames show another layer or other pixels", file),
+          "render all of them alike");
     comparison.add(std::move(now.image), std::move(now.reference), std::move(now.halves), now.fovea);
     last = std::move(now);
   }

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import unittest
 
+import exr
 from program import BAD_INPUT, CANNOT_WRITE, USAGE, CliTest
 
 SIZE = (16, 8)
@@ -94,6 +95,126 @@ class Compare(CompareTest):
         self.fails(BAD_INPUT, "compare", "a.exr", "bright.exr", says=["1.25", "3", "--exposure"])
         self.succeeds("compare", "a.exr", "bright.exr", "--exposure", "2")
 
+    def exr(self, name, *parts):
+        exr.write(self.folder / name, *parts)
+        return name
+
+    @staticmethod
+    def rgb(value, prefix="", **more):
+        pixel = value if callable(value) else lambda x, y: value
+        return {**{prefix + c: pixel for c in "RGB"}, **more}
+
+    def whole(self, *arguments):
+        return self.json("compare", *arguments, "--exposure", "1")["whole"]["mse"]
+
+    def test_parts(self):
+        """Every part of an EXR is a layer, or several."""
+        window = (0, 0, 8, 4)
+        for name, light in (("g.exr", 0.25), ("a.exr", 0.5)):
+            self.exr(name, exr.Part(self.rgb(0.75), window, name="albedo"),
+                     exr.Part(self.rgb(light), window, name="radiance"),
+                     exr.Part({**self.rgb(light, "diffuse."), **self.rgb(0.1, "glossy.")}, window, name="left"),
+                     exr.Part(self.rgb(light, "sky."), window, name="sky"))
+        error = (srgb(0.5) - srgb(0.25)) ** 2
+        run = self.json("compare", "a.exr", "g.exr", "--exposure", "1")
+        self.assertEqual(run["layer"], "radiance")
+        self.assertAlmostEqual(run["whole"]["mse"], error, delta=1e-6)
+        for layer, expected in (("albedo", 0), ("left.diffuse", error), ("left.glossy", 0), ("sky", error)):
+            self.assertAlmostEqual(self.whole("a.exr", "g.exr", "--layer", layer), expected, delta=1e-6, msg=layer)
+        self.fails(BAD_INPUT, "compare", "a.exr", "g.exr", "--layer", "beauty",
+                   says=["`beauty`", "`albedo`", "`radiance`", "`left.diffuse`", "`left.glossy`", "`sky`", "--layer"])
+        for name in ("g.exr", "a.exr"):
+            self.exr(name, exr.Part(self.rgb(0.75), window, name="one"), exr.Part(self.rgb(0.25), window, name="two"))
+        self.fails(BAD_INPUT, "compare", "a.exr", "g.exr", says=["`one`", "`two`", "--layer"])
+        self.exr("one.exr", exr.Part(self.rgb(0.75, "diffuse."), window))
+        self.fails(BAD_INPUT, "compare", "one.exr", "g.exr", "--layer", "one", says=["one.exr", "`diffuse`"])
+
+    def test_windows(self):
+        """Crops are compared where they lie in the picture."""
+        whole, ramp = (0, 0, 16, 8), lambda x, y: 0.05 * x + 0.02 * y
+        self.exr("g.exr", exr.Part(self.rgb(ramp), whole))
+        self.exr("a.exr", exr.Part(self.rgb(ramp), (4, 2, 6, 4), whole))
+        self.exr("b.exr", exr.Part(self.rgb(ramp), (8, 3, 8, 5), whole))
+        self.exr("c.exr", exr.Part(self.rgb(ramp), (12, 3, 4, 4), whole))
+        self.exr("over.exr", exr.Part(self.rgb(lambda x, y: ramp(x, y) if 0 <= x < 16 and 0 <= y < 8 else 9),
+                                      (-2, -3, 20, 14), whole))
+        for one, other, window in (("a.exr", "g.exr", [4, 2, 6, 4]), ("g.exr", "a.exr", [4, 2, 6, 4]),
+                                   ("a.exr", "b.exr", [8, 3, 2, 3]), ("b.exr", "g.exr", [8, 3, 8, 5])):
+            run = self.succeeds("compare", one, other, "--json", "--exposure", "1")
+            m = json.loads(run.stdout)
+            self.assertEqual((m["window"], m["size"]), (window, [16, 8]))
+            self.assertEqual((m["whole"]["mse"], m["whole"]["pixels"]), (0, window[2] * window[3]))
+            self.assertIn("are compared", run.stderr)
+        run = self.succeeds("compare", "over.exr", "g.exr", "--json", "--exposure", "1")
+        self.assertEqual((run.stderr, json.loads(run.stdout)["whole"]["mse"]), ("", 0))
+        self.assertNotIn("window", json.loads(run.stdout))
+        # The fovea stays where it is in the picture: four pixels around 12, 4.
+        m = self.json("compare", "b.exr", "g.exr", "--gaze", "0.75,0.5", "--radius", "0.0625", "--exposure", "1")
+        self.assertEqual(m["fovea"]["pixels"], 4)
+        m = self.json("compare", "a.exr", "g.exr", "--gaze", "0.75,0.5", "--radius", "0.0625", "--exposure", "1")
+        self.assertEqual(m["fovea"]["pixels"], 0)
+        self.fails(BAD_INPUT, "compare", "a.exr", "c.exr", says=["none in common", "6x4 from 4, 2", "4x4 from 12, 3"])
+        self.exr("cut.exr", exr.Part(self.rgb(ramp), (4, 2, 6, 4)))
+        self.exr("moved.exr", exr.Part(self.rgb(ramp), (1, 0, 16, 8)))
+        self.exr("outside.exr", exr.Part(self.rgb(ramp), (20, 0, 4, 4), whole))
+        for name in ("cut.exr", "moved.exr"):
+            self.fails(BAD_INPUT, "compare", name, "g.exr", says=[name, "differ in size", "from"])
+        self.fails(BAD_INPUT, "compare", "outside.exr", "outside.exr", says=["none in common"])
+        self.exr("h.exr", exr.Part(self.rgb(0.5), (4, 2, 6, 4), whole))
+        self.fails(BAD_INPUT, "compare", "g.exr", "g.exr", "--halves", "h.exr", "h.exr", says=["h.exr", "not all of"])
+        self.succeeds("compare", "a.exr", "g.exr", "--halves", "h.exr", "h.exr")
+        self.pfm("p.pfm", lambda x, y, c: ramp(x, y))
+        self.assertEqual(self.whole("a.exr", "p.pfm"), 0)
+
+    def test_channels(self):
+        window, far = (0, 0, 8, 4), lambda x, y: math.inf
+        self.exr("g.exr", exr.Part(self.rgb(0.25), window))
+        error = (srgb(0.5) - srgb(0.25)) ** 2
+        # Depth, alpha and numbers of objects are no light.
+        self.exr("a.exr", exr.Part(self.rgb(0.5, A=lambda x, y: 0, Z=far, id=("uint", lambda x, y: 2 ** 31)), window))
+        run = self.succeeds("compare", "a.exr", "g.exr", "--json", "--exposure", "1")
+        self.assertAlmostEqual(json.loads(run.stdout)["whole"]["mse"], error, delta=1e-6)
+        self.assertIn("`Z`", run.stderr)
+        self.fails(BAD_INPUT, "compare", "a.exr", "a.exr", "--layer", "id", says=["`id`", "integers"])
+        self.exr("half.exr", exr.Part({c: ("half", lambda x, y: 0.5) for c in "rgb"}, window))
+        self.assertAlmostEqual(self.whole("half.exr", "g.exr"), error, delta=1e-6)
+        self.exr("grey.exr", exr.Part({"Y": lambda x, y: 0.5}, window))
+        run = self.succeeds("compare", "grey.exr", "g.exr")
+        self.assertIn("`grey.exr` is grey", run.stderr)
+        self.exr("normal.exr", exr.Part({"N." + c: lambda x, y: 0.5 for c in "XYZ"}, window))
+        self.exr("motion.exr", exr.Part({"motion." + c: lambda x, y: 0.5 for c in "XY"}, window))
+        self.assertAlmostEqual(self.whole("normal.exr", "g.exr"), error, delta=1e-6)
+        self.fails(BAD_INPUT, "compare", "motion.exr", "g.exr", says=["`motion`", "`X`, `Y`", "no colours"])
+        run = self.succeeds("compare", "normal.exr", self.exr("n.exr", exr.Part(self.rgb(0.5, "albedo."), window)))
+        self.assertIn("`N` of `normal.exr` is compared with the layer `albedo`", run.stderr)
+        self.exr("ids.exr", exr.Part({"id": ("uint", lambda x, y: x)}, window))
+        self.fails(BAD_INPUT, "compare", "ids.exr", "ids.exr", says=["ids.exr", "integers"])
+        light = ("float", lambda x, y: 0.5, 2)
+        self.exr("chroma.exr", exr.Part({"Y": lambda x, y: 0.5, "RY": light, "BY": light}, window))
+        self.fails(BAD_INPUT, "compare", "chroma.exr", "g.exr", says=["chroma.exr", "`BY`", "2x2"])
+        self.exr("chroma.exr", exr.Part({c: lambda x, y: 0.5 for c in ("Y", "RY", "BY")}, window))
+        self.fails(BAD_INPUT, "compare", "chroma.exr", "g.exr", says=["chroma.exr", "luminance"])
+        self.exr("deep.exr", exr.Part(self.rgb(0.5), window, deep=True))
+        self.fails(BAD_INPUT, "compare", "deep.exr", "g.exr", says=["deep.exr", "deep"])
+        self.exr("deep.exr", exr.Part(self.rgb(0.5), window, name="volume", deep=True),
+                 exr.Part(self.rgb(0.5), window, name="flat"))
+        self.assertAlmostEqual(self.whole("deep.exr", "g.exr"), error, delta=1e-6)
+        self.fails(BAD_INPUT, "compare", "deep.exr", "deep.exr", "--layer", "volume",
+                   says=["`volume`", "deep", "`flat`"])
+
+    def test_kinds_of_files(self):
+        """Tiles and mip maps are pictures; what a file holds tells its kind, not its name."""
+        oiio = lambda *how: subprocess.run(["oiiotool", *how], cwd=self.folder, check=True)
+        self.pfm("g.pfm", lambda x, y, c: 0.02 * x)
+        for name, how in (("tiled.exr", ["--tile", "8", "8"]), ("half.exr", ["-d", "half"]), ("light.hdr", [])):
+            oiio("g.pfm", *how, "-o", name)
+            self.assertLess(self.whole(name, "g.pfm"), 1e-5, name)
+        oiio("g.pfm", "-otex:fileformatname=openexr", "mip.exr")
+        self.assertLess(self.whole("mip.exr", "g.pfm"), 1e-5)
+        (self.folder / "g.exr").write_bytes((self.folder / "tiled.exr").read_bytes())
+        (self.folder / "named.png").write_bytes((self.folder / "tiled.exr").read_bytes())
+        self.assertLess(self.whole("named.png", "g.exr"), 1e-9)
+
     def test_table_and_error_picture(self):
         self.pfm("g.pfm", 0.25, (80, 40))
         self.pfm("a.pfm", 0.3, (80, 40))
@@ -171,6 +292,13 @@ class CompareSequence(CompareTest):
         self.fails(BAD_INPUT, *command, says=["more than one sequence"])
         self.fails(BAD_INPUT, "compare-sequence", "a/f_%02x.pfm", "g", says=["%04d"])
         self.fails(BAD_INPUT, "compare-sequence", "g/f_000.pfm", "g", says=["folder"])
+        for i, window in enumerate(((0, 0, 8, 4), (4, 0, 8, 4))):
+            for folder in ("crops", "whole"):
+                (self.folder / folder).mkdir(exist_ok=True)
+                exr.write(self.folder / folder / f"f_{i}.exr",
+                          exr.Part({c: lambda x, y: 0.5 for c in "RGB"}, window if folder == "crops" else (0, 0, 16, 8),
+                                   (0, 0, 16, 8)))
+        self.fails(BAD_INPUT, "compare-sequence", "crops", "whole", says=["f_1.exr", "other pixels"])
         self.sequence("one", [0.1])
         self.fails(BAD_INPUT, "compare-sequence", "one", "one", says=["two frames"])
 

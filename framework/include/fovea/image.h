@@ -18,17 +18,35 @@ struct Image {
   float at(uint32_t x, uint32_t y, uint32_t c) const { return data[(size_t(y) * width + x) * channels + c]; }
 };
 
+struct Window {
+  int32_t x = 0, y = 0;  // of the first pixel
+  uint32_t width = 0, height = 0;
+  bool operator==(const Window&) const = default;
+};
+
 struct Layer {
   std::string name;  // "radiance", "indirect", ...; "" for the only layer of a plain file
   Image image;
+  std::vector<std::string> channels = {};  // their names ("R", "Z"); empty: Y or RGBA, by their number
+  // The picture that the layer belongs to, and the pixels of it that `image` holds: in EXR files the display and the
+  // data window. A width of 0 stands for all of the image.
+  Window display = {}, data = {};
 };
 
 using Metadata = std::map<std::string, std::string>;
 
+// A layer of a file, or a channel outside all layers, that is left out.
+struct Unread {
+  std::string name, reason;
+};
+
 struct File {
   std::vector<Layer> layers;
   Metadata metadata;
+  std::vector<Unread> unread = {};
+  bool radiance = false;  // of an EXR, PFM or HDR file; others hold display values
   const Image* find(std::string_view layer) const;
+  const Layer* findLayer(std::string_view layer) const;
 };
 
 // 8-bit RGBA for glTF textures; rows run from top to bottom.
@@ -55,7 +73,10 @@ void write(const std::filesystem::path& file, const std::vector<Layer>& layers,
 void checkWritable(const std::filesystem::path& file);
 
 // These throw Error(BadInput) naming the file and the reason. PNG and JPEG values are returned as stored, without
-// removing a transfer curve.
+// removing a transfer curve. Of an EXR with several parts, all are read: the layers of a part are named after it
+// ("albedo"), and after it and their own names ("left.albedo") where these differ. Of mip maps, the finest level is
+// read. Deep parts, parts with a sample for several pixels (luminance and chroma), and channels of integers are left
+// out and listed in `unread`; a file of nothing else is refused.
 File read(const std::filesystem::path& file);
 Image8 read8(const std::filesystem::path& file);
 Image8 decode8(const uint8_t* bytes, size_t size, const std::string& name);  // a PNG or JPEG in memory

@@ -76,7 +76,11 @@ glm::vec3 EnvironmentMap::radiance(glm::vec3 direction) const {
 std::shared_ptr<const EnvironmentMap> loadEnvironment(const std::filesystem::path& file, float intensity,
                                                       float turn) {
   const image::File content = image::read(file);
-  const image::Image& picture = content.layers.front().image;
+  const image::Layer& layer = content.layers.front();
+  const image::Image& picture = layer.image;
+  if (layer.data != layer.display)
+    throw Error(ExitCode::BadInput, file.string() + ": its data window is not its display window",
+                "give all pixels of the map, and no others");
   if (picture.channels < 3 || picture.width != 2 * picture.height)
     throw Error(ExitCode::BadInput,
                 file.string() + ": an environment is a colour image twice as wide as high, this one is " +
