@@ -120,6 +120,13 @@ void addFrameLimitOption(CLI::App& command, double& seconds) {
       ->check(numberBetween(0, 1e9));
 }
 
+void addFollowLinksOption(CLI::App& command) {
+  command.add_flag_callback(
+      "--follow-links", [] { setenv("FOVEA_FOLLOW_LINKS", "1", 1); },
+      "Read parts of models also through links that lead out of the model's folder, as\n"
+      "those of git-annex, DVC and Nix do; the same as FOVEA_FOLLOW_LINKS=1");
+}
+
 void addEnvironmentOption(CLI::App& command, std::string& file) {
   command
       .add_option("--environment", file,

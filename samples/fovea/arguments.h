@@ -20,6 +20,8 @@ void addGraphOptions(CLI::App& command, GraphOptions& options);
 void addDeviceOptions(CLI::App& command, std::string& device, std::vector<std::string>& without);
 // --frame-limit
 void addFrameLimitOption(CLI::App& command, double& seconds);
+// --follow-links
+void addFollowLinksOption(CLI::App& command);
 // --environment
 void addEnvironmentOption(CLI::App& command, std::string& file);
 // --gaze, --radius, --layer, --exposure, --json

@@ -51,6 +51,7 @@ void addSuiteOptions(CLI::App& command, bench::SuiteOptions& options) {
   command.add_option("--seeds", options.seeds, "Seeds instead of the suite's number of them")
       ->type_name("N")
       ->transform(wholeNumberBetween(1, 1000));
+  addFollowLinksOption(command);
   addDeviceOptions(command, options.device, options.without);
   addFrameLimitOption(command, options.frameLimit);
   addPluginOption(command, options.plugins);

@@ -365,6 +365,7 @@ void addRender(CLI::App& program, Action& action) {
                    "Scene: a .json, .gltf or .glb file, or a bare name (cornellbox)")
       ->required()
       ->type_name("SCENE");
+  addFollowLinksOption(*command);
   addEnvironmentOption(*command, options->environment);
   addOutputOptions(*command, *options);
   command->add_option("--size", options->size, "Picture size, 1 to 16384 pixels a side; default 1024x1024")

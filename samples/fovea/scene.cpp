@@ -126,6 +126,7 @@ void addScene(CLI::App& program, Action& action) {
       ->required()
       ->type_name("");
   auto options = std::make_shared<scene::LoadOptions>();
+  addFollowLinksOption(*infoCommand);
   addEnvironmentOption(*infoCommand, options->environment);
   infoCommand->callback(
       [name, options, &action] { action = [name, options] { return info(*name, *options); }; });

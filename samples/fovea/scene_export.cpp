@@ -82,6 +82,7 @@ void addSceneExport(CLI::App& sceneCommand, Action& action) {
   command->add_option("--materials", o->materials, "mitsuba: diffuse (default) or full")
       ->check(CLI::IsMember({"diffuse", "full"}))
       ->type_name("KIND");
+  addFollowLinksOption(*command);
   command->callback([o, &action] { action = [o] { return exportScene(*o); }; });
 }
 

@@ -192,6 +192,28 @@ class Inputs(CliTest):
             "buffers": [{"byteLength": 36,
                          "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}]})
 
+    def test_follow_links(self):
+        """As git-annex keeps the parts of a model."""
+        model = json.loads(self.model([0, 0, 0, 1, 0, 0, 0, 1, 0]).read_text())
+        data = base64.b64decode(model["buffers"][0]["uri"].split(",")[1])
+        (self.folder / "objects").mkdir()
+        (self.folder / "in").mkdir()
+        (self.folder / "objects/data").write_bytes(data)
+        (self.folder / "in/data.bin").symlink_to("../objects/data")
+        model["buffers"][0]["uri"] = "data.bin"
+        self.write("in/model.gltf", model)
+        for command in (["scene", "info", "in/model.gltf"], ["render", "direct", "--scene", "in/model.gltf", *SMALL],
+                        ["scene", "export", "in/model.gltf", "-o", "out"]):
+            self.fails(BAD_INPUT, *command, says=["in/model.gltf:", "--follow-links", "FOVEA_FOLLOW_LINKS"])
+        self.succeeds("scene", "info", "in/model.gltf", "--follow-links")
+        self.succeeds("scene", "info", "in/model.gltf", env={"FOVEA_FOLLOW_LINKS": "1"})
+        self.fails(BAD_INPUT, "scene", "info", "in/model.gltf", env={"FOVEA_FOLLOW_LINKS": "0"})
+        self.succeeds("scene", "export", "in/model.gltf", "-o", "out", "--follow-links")
+        for uri in ("../objects/data", str(self.folder / "objects/data")):
+            model["buffers"][0]["uri"] = uri
+            self.write("in/model.gltf", model)
+            self.fails(BAD_INPUT, "scene", "info", "in/model.gltf", "--follow-links", says=["refused"])
+
     def test_numbers_that_are_none(self):
         good = [0, 0, 0, 1, 0, 0, 0, 1, 0]
         self.model(good)

@@ -83,8 +83,18 @@ TEST(GltfHostile, LinksThatLeadOut) {
   folder.write("in/model.gltf", d.json());
   std::filesystem::create_symlink("../secret.bin", folder.path() / "in/data.bin");
   Diagnostics warnings;
+  EXPECT_THAT(
+      errorOf([&] { loadGltf(folder.path() / "in/model.gltf", warnings); }),
+      AllOf(HasSubstr("buffers[0].uri"), HasSubstr("link that leads out"), HasSubstr("--follow-links")));
+  setenv("FOVEA_FOLLOW_LINKS", "1", 1);
+  EXPECT_EQ(loadGltf(folder.path() / "in/model.gltf", warnings).meshes.size(), 1u);
+  setenv("FOVEA_FOLLOW_LINKS", "yes", 1);
   EXPECT_THAT(errorOf([&] { loadGltf(folder.path() / "in/model.gltf", warnings); }),
-              AllOf(HasSubstr("buffers[0].uri"), HasSubstr("link that leads out")));
+              HasSubstr("FOVEA_FOLLOW_LINKS is `yes`"));
+  std::filesystem::remove(folder.path() / "secret.bin");
+  EXPECT_THAT(errorOf([&] { loadGltf(folder.path() / "in/model.gltf", warnings); }),
+              HasSubstr("is a link to ../secret.bin, which is missing"));
+  unsetenv("FOVEA_FOLLOW_LINKS");
   // Links to a model and to its parts, which lie together elsewhere.
   folder.write("real/model.gltf", d.json());
   folder.write("real/data.bin", d.bytes);
@@ -92,6 +102,25 @@ TEST(GltfHostile, LinksThatLeadOut) {
   for (const char* name : {"model.gltf", "data.bin"})
     std::filesystem::create_symlink(folder.path() / "real" / name, folder.path() / "links" / name);
   EXPECT_EQ(loadGltf(folder.path() / "links/model.gltf", warnings).meshes.size(), 1u);
+}
+
+TEST(GltfHostile, BackslashesInUris) {
+  TemporaryFolder folder;
+  TriangleDocument d;
+  folder.write("parts/data.bin", d.bytes);
+  const auto error = [&](const std::string& uri) {
+    d.bufferUri = uri;
+    Diagnostics warnings;
+    const std::filesystem::path model = folder.write("model.gltf", d.json());
+    return errorOf([&] { loadGltf(model, warnings); });
+  };
+  for (const char* uri : {R"(parts\\data.bin)", "parts%5Cdata.bin", R"(.\\parts/data.bin)"})
+    EXPECT_THAT(error(uri), AllOf(HasSubstr("backslashes"), HasSubstr("parts/data.bin\""))) << uri;
+  EXPECT_THAT(error(R"(..\\data.bin)"), HasSubstr("backslashes"));
+  EXPECT_THAT(error(R"(\\data.bin)"), HasSubstr("absolute"));
+  // A file may be called so.
+  folder.write("odd\\name.bin", d.bytes);
+  EXPECT_EQ(error(R"(odd\\name.bin)"), "");
 }
 
 TEST(GltfHostile, DataUriWithoutData) {

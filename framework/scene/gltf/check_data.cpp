@@ -68,11 +68,10 @@ class DataChecker : DocumentReader {
     }
     const ResolvedUri r = resolveUri(source_, uri->string);
     if (!r.problem.empty())
-      return error(*uri, place, "uri \"" + uri->string.substr(0, 200) + "\": " + r.problem,
-                   "put the file into the model's folder and name it relative to that");
+      return error(*uri, place, "uri \"" + uri->string.substr(0, 200) + "\": " + r.problem, r.remedy);
     std::error_code ec;
     if (mustExist && !std::filesystem::is_regular_file(r.file, ec))
-      error(*uri, place, "the file " + r.file.string() + " is missing", "copy it beside the model");
+      error(*uri, place, whyMissing(r.file), "copy it beside the model");
   }
 
   void checkBuffers() {

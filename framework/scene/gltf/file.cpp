@@ -1,4 +1,6 @@
 // Reads a .gltf or .glb file and the files beside it, and nothing else.
+#include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
@@ -133,8 +135,19 @@ static bool staysInside(const Source& source, const fs::path& file) {
   return false;
 }
 
+// Whoever sets this trusts the links that they have made, or that git-annex, DVC or Nix have.
+static bool followsLinks() {
+  const char* variable = std::getenv("FOVEA_FOLLOW_LINKS");
+  const std::string_view value = variable ? variable : "";
+  if (!value.empty() && value != "0" && value != "1")
+    throw Error(ExitCode::BadInput, "FOVEA_FOLLOW_LINKS is `" + std::string(value) + "`, neither 0 nor 1",
+                "unset it, or set it to 1");
+  return value == "1";
+}
+
 ResolvedUri resolveUri(const Source& source, std::string_view uri) {
   ResolvedUri r;
+  r.remedy = "put the file into the model's folder and name it relative to that";
   r.decoded = percentDecode(uri);
   const std::string& text = r.decoded;
   const fs::path relative = fs::path(text).lexically_normal();
@@ -152,10 +165,28 @@ ResolvedUri resolveUri(const Source& source, std::string_view uri) {
     r.problem = "it names a folder, not a file";
   } else {
     r.file = source.folder / relative;
-    if (!staysInside(source, r.file))
+    std::error_code ignored;
+    if (text.find('\\') != std::string::npos && !fs::exists(r.file, ignored)) {
+      std::string slashes = text;
+      std::replace(slashes.begin(), slashes.end(), '\\', '/');
+      r.problem = "there is no file of this name; in a uri, slashes and not backslashes separate folders";
+      r.remedy = "write \"" + slashes + "\"";
+    } else if (!staysInside(source, r.file) && !followsLinks()) {
       r.problem = "it is a link that leads out of the model's folder, which is refused";
+      r.remedy =
+          "if the links of this model can be trusted, follow them: --follow-links, or FOVEA_FOLLOW_LINKS=1 "
+          "in the "
+          "environment";
+    }
   }
   return r;
+}
+
+std::string whyMissing(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::is_symlink(file, ignored)) return "the file " + file.string() + " is missing";
+  return "the file " + file.string() + " is a link to " + fs::read_symlink(file, ignored).string() +
+         ", which is missing";
 }
 
 }  // namespace fovea::scene::gltf

@@ -68,9 +68,11 @@ bool isDataUri(std::string_view uri);
 struct ResolvedUri {
   std::filesystem::path file;
   std::string decoded;
-  std::string problem;  // empty if there is none
+  std::string problem, remedy;  // empty if there is none
 };
 ResolvedUri resolveUri(const Source& source, std::string_view uri);
+// "the file a.png is missing", and the same of the target of a link.
+std::string whyMissing(const std::filesystem::path& file);
 
 // ---- check ----
 

@@ -311,10 +311,10 @@ class MaterialBuilder {
     const tinygltf::Image& image = c_.model.images[index];
     if (!image.image.empty()) return image.image;
     const ResolvedUri r = resolveUri(c_.source, image.uri);
-    if (!r.problem.empty()) c_.fail(messageName(index), r.problem);
+    if (!r.problem.empty()) throw Error(ExitCode::BadInput, messageName(index) + ": " + r.problem, r.remedy);
     std::error_code ec;
     if (!std::filesystem::exists(r.file, ec))
-      throw Error(ExitCode::BadInput, messageName(index) + ": the texture " + r.file.string() + " is missing",
+      throw Error(ExitCode::BadInput, messageName(index) + ": " + whyMissing(r.file),
                   "copy it beside the model, or remove it from the material");
     file_ = readFile(r.file);
     return file_;

@@ -72,6 +72,7 @@ void addView(CLI::App& program, Action& action) {
                    "Scene: a .json, .gltf or .glb file, or a bare name (cornellbox)")
       ->required()
       ->type_name("SCENE");
+  addFollowLinksOption(*command);
   addEnvironmentOption(*command, settings.environment);
   command->add_option("--size", options->size, "Picture size; default 512x512")->type_name("WxH");
   command->add_option("--seed", settings.seed, "Seed of all random numbers; default 1")
