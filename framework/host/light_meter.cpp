@@ -45,7 +45,11 @@ class KernelMeter : public LightMeter {
     std::vector<MeterPoint> points(size_t(size.x) * size.y);
     run("scene/light_meter.comp", frame, {size.x, size.y}, {8, 8, 1}, {},
         {{"points", resourceOf(std::span(points))}});
-    for (MeterPoint& point : points) point.radiance /= frame.preExposure;
+    for (MeterPoint& point : points) {
+      point.radiance /= frame.preExposure;
+      point.arriving /= frame.preExposure;
+      point.emitted /= frame.preExposure;
+    }
     return points;
   }
 

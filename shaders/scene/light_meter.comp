@@ -19,7 +19,12 @@ void main() {
   MeterPoint point = MeterPoint(v.position, float(v.there), v.origin, 0.0, v.normal, 0.0, vec3(0.0), 0.0);
   if (v.there) {
     uint stream = randomStream(1u, pixel.x, 0u, pixel.y);
-    point.radiance = seenLight(v, -direction, 0.0) + reflectance(v) * gather(v, kBounces, kGathered, stream);
+    Reflection r = reflectionOf(v, -direction, vec3(0.0), 0.0);
+    vec3 emission = v.brighter * r.emission, gathered = gather(v, kBounces, kGathered, stream);
+    vec3 arriving = gathered + irradianceAt(v) / kPi;
+    point.radiance = emission + directLight(v, r) + reflectance(v) * gathered;
+    point.emitted = max(max(emission.x, emission.y), emission.z);
+    point.arriving = max(max(arriving.x, arriving.y), arriving.z);
   } else {
     point.radiance = hasEnvironmentMap() ? environmentRadiance(direction) : frame.environment;
   }

@@ -342,6 +342,89 @@ TEST(FirstView, ASunHelpsWhereALanternDoesNot) {
   expectGoodPicture(s);
 }
 
+// A closed room of 4 m, whose camera at one wall looks at the opposite one, with a square of this radiance.
+struct Glowing {
+  glm::vec3 centre, halfU, halfV;  // the square faces cross(halfU, halfV)
+  float radiance;
+};
+scene::Scene roomLitBy(const Glowing& g) {
+  scene::Scene s = room();
+  const uint32_t emissive = addMaterial(s, glm::vec3(0));
+  s.materials[emissive].emission = glm::vec3(g.radiance);
+  addQuad(s, emissive, g.centre - g.halfU - g.halfV, 2.0f * g.halfU, 2.0f * g.halfV);
+  scene::Camera camera;
+  camera.position = {0, 0, 1.9f};
+  camera.verticalFov = 1.2f;
+  s.cameras.push_back(camera);
+  return s;
+}
+
+constexpr glm::vec3 kAlongX(1, 0, 0), kAlongY(0, 1, 0), kAlongZ(0, 0, 1);
+
+// Below the ceiling, in view and far brighter than the walls; as dim as a screen; behind the camera.
+TEST(FirstView, EmissiveSurfacesThatLightARoomAreItsLamps) {
+  for (const Glowing& g : {Glowing{{0, 1.95f, 0}, 0.5f * kAlongX, 0.5f * kAlongZ, 10},
+                           {{0, 1.95f, 0}, 0.5f * kAlongX, 0.5f * kAlongZ, 1},
+                           {{0, 1.95f, 0}, 0.5f * kAlongX, 0.5f * kAlongZ, 0.01f},
+                           {{0, 1.95f, 0}, 0.05f * kAlongX, 0.05f * kAlongZ, 2000},
+                           {{0, 0, 1.95f}, 0.5f * kAlongY, 0.5f * kAlongX, 10},
+                           {{-1.95f, 0, 0}, 1.5f * kAlongY, 0.2f * kAlongZ, 3},
+                           {{0, 0, -1.95f}, kAlongX, kAlongY, 1}}) {
+    scene::Scene s = roomLitBy(g);
+    EXPECT_EQ(scene::addFirstView(s).light, "") << g.radiance << " at " << g.centre.x << " " << g.centre.y;
+    EXPECT_TRUE(s.lights.empty());
+    EXPECT_GT(s.exposure, 0);
+  }
+}
+
+// The frame of a picture that glows, a screen in standby, and a panel that faces the wall behind it.
+TEST(FirstView, EmissiveSurfacesThatLightNothingAreNoLamps) {
+  for (const Glowing& g : {Glowing{{0, 0, -1.95f}, 0.15f * kAlongX, 0.2f * kAlongY, 1},
+                           {{0, 0, -1.95f}, 0.15f * kAlongX, 0.2f * kAlongY, 0.02f},
+                           {{1, -1, -1.95f}, 0.02f * kAlongX, 0.02f * kAlongY, 1},
+                           {{0, 0, -1.998f}, 0.5f * kAlongY, 0.5f * kAlongX, 10}}) {
+    scene::Scene s = roomLitBy(g);
+    EXPECT_EQ(scene::addFirstView(s).light, "a lamp")
+        << g.radiance << " at " << g.centre.x << " " << g.centre.y;
+  }
+}
+
+// Lamps beyond a wall light nothing in view; those of a room do, however much brighter an emissive panel looks.
+TEST(FirstView, LampsCountWhereTheirLightArrives) {
+  scene::Light bulb;
+  bulb.type = scene::LightType::Point;
+  bulb.intensity = 50;
+  scene::Scene other = roomLitBy({{0, 0, -1.95f}, 0.1f * kAlongX, 0.1f * kAlongY, 0});
+  bulb.position = {0, 0, -3};
+  other.lights.push_back(bulb);
+  EXPECT_EQ(scene::addFirstView(other).light, "a lamp");
+  scene::Scene lit = roomLitBy({{0, 0, -1.95f}, 0.3f * kAlongX, 0.3f * kAlongY, 1000});
+  bulb.position = {0, 1.5f, 0};
+  bulb.intensity = 1;
+  lit.lights.push_back(bulb);
+  EXPECT_EQ(scene::addFirstView(lit).light, "");
+}
+
+// A room with a window, before which there is a sky; and one whose window is as small as a keyhole.
+TEST(FirstView, AnEnvironmentLightsRoomsThroughWindows) {
+  for (const bool wide : {true, false}) {
+    scene::Scene s;
+    const uint32_t wall = addMaterial(s, glm::vec3(0.6f));
+    const uint32_t walls[6] = {wall, wall, wall, wall, wall, wall};
+    addRoom(s, walls, 2);
+    for (const scene::Node& node : s.nodes)
+      for (scene::Primitive& p : s.meshes[node.mesh].primitives)
+        if (std::ranges::all_of(p.positions, [](glm::vec3 v) { return v.x < -1.9f; }))
+          for (glm::vec3& v : p.positions) v.y = wide ? v.y < 0 ? v.y : 0.4f : v.y < 1.9f ? v.y : 1.998f;
+    s.environmentMap = std::make_shared<scene::EnvironmentMap>(4, 2, std::vector<glm::vec3>(8, glm::vec3(1)));
+    scene::Camera camera;
+    camera.position = {0, 0, 1.9f};
+    camera.verticalFov = 1.2f;
+    s.cameras.push_back(camera);
+    EXPECT_EQ(scene::addFirstView(s).light, wide ? "" : "a lamp");
+  }
+}
+
 // A dim wall with a lamp on it, which fills 3% of the picture and is fifty times as bright.
 TEST(FirstView, DarkRoomsAreExposedForWhatIsDark) {
   scene::Scene s;

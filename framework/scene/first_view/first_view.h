@@ -28,8 +28,9 @@ std::string addFirstCamera(Scene& scene, const Geometry& geometry);
 // less than half of its picture: the smallest floor that catches the shadow and with which surfaces fill three fifths
 // of the picture.
 std::string addFirstFloor(Scene& scene, const Geometry& geometry);
-// A sun and a sky; or a lamp, if no sun could reach the surfaces that the first camera sees. Nothing if at least half
-// of them, without the floor that was added, are lit, and, where there is no light but that of emissive and unlit surfaces, also the floor that was added.
+// A sun and a sky; or a lamp, if no sun could reach the surfaces that the first camera sees. Nothing if light reaches
+// at least half of them, be it that of lights, of emissive surfaces or of an environment, and, where there is no light
+// but that of emissive and unlit surfaces, also the floor that was added.
 std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdded = false);
 // Whether no light reaches the floor that was added, so that it would only be a black disc.
 bool firstFloorIsDark(const Scene& scene, const Geometry& geometry);

@@ -22,6 +22,7 @@ constexpr uint32_t kWidth = 48;                   // of the picture, pixels
 constexpr uint32_t kGathered = 4;                 // rays for further bounces at each of them
 constexpr float kDark = 0.02f;                    // of the brightest light: less is not visible beside it
 constexpr float kDarkFloor = 0.1f;                // the same of a floor beside what lights itself
+constexpr float kFaint = 0.005f;                  // of what emissive surfaces emit: less than lamps give
 constexpr float kDisplay = 0.45f;                 // mean display value
 constexpr float kClipped = 0.015f;                // most of the surfaces' pixels that may be clipped
 constexpr float kDisplayInDark = 0.27f;           // the same where most of the picture stays dark with that,
@@ -39,32 +40,74 @@ Frame firstFrame(const Scene& scene, const Geometry& geometry) {
 
 float brightest(glm::vec3 light) { return std::max({light.r, light.g, light.b}); }
 
-// How bright the median of the surfaces is, relative to the brightest: of the floor that was added, and of the others.
-// 1 where there are none.
-struct Brightness {
-  float things = 1, floor = 1;
+// The picture without the floor that was added, and that floor alone.
+struct Parts {
+  Picture things, floor;
 };
 
-Brightness brightnessOf(const Scene& scene, const Geometry& geometry, const Picture& picture,
-                        bool floorAdded) {
-  const float above = 1e-5f * glm::length(geometry.boundsMax - geometry.boundsMin);
-  const float floor =
-      floorAdded ? scene.nodes.back().translation.y + above : std::numeric_limits<float>::lowest();
-  std::vector<float> all, parts[2];
+Parts partsOf(const Scene& scene, const Geometry& geometry, const Picture& picture, bool floorAdded) {
+  if (!floorAdded) return {picture, {}};
+  const float above = 1e-5f * glm::length(geometry.boundsMax - geometry.boundsMin),
+              height = scene.nodes.back().translation.y + above;
+  Parts parts;
+  for (const MeterPoint& point : picture)
+    (point.position.y <= height ? parts.floor : parts.things).push_back(point);
+  return parts;
+}
+
+// Radiance of the surfaces in a picture, ascending.
+std::vector<float> radianceOf(const Picture& picture) {
+  std::vector<float> list;
+  for (const MeterPoint& point : picture)
+    if (point.there > 0) list.push_back(brightest(point.radiance));
+  std::ranges::sort(list);
+  return list;
+}
+
+// How bright the median of the floor is, relative to the brightest in the picture; 1 if it shows no floor.
+float floorBrightness(const Picture& picture, const Picture& floor) {
+  const std::vector<float> all = radianceOf(picture), ground = radianceOf(floor);
+  if (ground.empty()) return 1;
+  const float bright = all[size_t(float(all.size()) * (1 - kClipped))];
+  return bright > 0 ? ground[ground.size() / 2] / bright : 0;
+}
+
+// What emits in the scene and nothing else lights: the mean radiance of emissive surfaces, weighted by their power, at
+// most 1, which a screen without an exposure shows as white. 0 where there are lights or an environment.
+float glow(const Scene& scene, const Geometry& geometry) {
+  if (!scene.lights.empty() || scene.environmentMap || scene.environment != glm::vec3(0)) return 0;
+  double power = 0, weighted = 0;
+  for (const uint32_t t : geometry.emissive) {
+    const Triangle& triangle = geometry.triangles[t];
+    const Material& material = scene.materials[triangle.material()];
+    if (material.unlit) continue;
+    const glm::vec3 a = geometry.positions[triangle.v[0]], b = geometry.positions[triangle.v[1]],
+                    c = geometry.positions[triangle.v[2]];
+    const double radiance = double(brightest(material.emission));
+    const double own = radiance * double(glm::length(glm::cross(b - a, c - a)));
+    power += own;
+    weighted += own * radiance;
+  }
+  return power > 0 ? float(std::min(weighted / power, 1.0)) : 0;
+}
+
+// Whether enough light reaches at least half of the surfaces that they can be seen beside the brightest. Emissive
+// surfaces are seen in any case, and are no measure for others, as a lamp is always far brighter than the room that it
+// lights. If nothing but such surfaces gives light, however, `glow` is a measure as well: one that emits no more than a
+// white pixel and hardly lights its surroundings is a screen or a glowing sign, and no lamp.
+bool isLit(const Picture& picture, float glow) {
+  std::vector<float> visible, lit;
   for (const MeterPoint& point : picture) {
     if (!(point.there > 0)) continue;
-    all.push_back(brightest(point.radiance));
-    parts[point.position.y <= floor].push_back(all.back());
+    visible.push_back(std::max(point.arriving, point.emitted));
+    if (!(point.emitted > 0)) lit.push_back(point.arriving);
   }
-  if (all.empty()) return {};
-  std::ranges::sort(all);
-  const float bright = all[size_t(float(all.size()) * (1 - kClipped))];
-  const auto median = [&](std::vector<float>& list) {
-    if (list.empty()) return 1.0f;
-    std::ranges::sort(list);
-    return bright > 0 ? list[list.size() / 2] / bright : 0;
-  };
-  return {median(parts[0]), median(parts[1])};
+  if (visible.empty()) return true;
+  std::ranges::sort(visible);
+  std::ranges::sort(lit);
+  const float bright = lit.empty() ? 0 : lit[size_t(float(lit.size()) * (1 - kClipped))];
+  const float middle = visible[visible.size() / 2];
+  return middle > 0 && middle > std::max(kDark * bright, kFaint * glow);
 }
 
 // Share of the surfaces in the picture that a sun in this direction lights.
@@ -128,10 +171,12 @@ std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdde
   if (geometry.empty()) return {};
   const Frame frame = firstFrame(scene, geometry);
   const Picture picture = meter->picture(frame);
-  const Brightness brightness = brightnessOf(scene, geometry, picture, floorAdded);
+  const Parts parts = partsOf(scene, geometry, picture, floorAdded);
   // Lamps of the model may leave the floor in the dark.
   const bool floorCounts = scene.lights.empty() && !scene.environmentMap;
-  if (brightness.things > kDark && (!floorCounts || brightness.floor > kDarkFloor)) return {};
+  if (isLit(parts.things, glow(scene, geometry)) &&
+      (!floorCounts || floorBrightness(picture, parts.floor) > kDarkFloor))
+    return {};
   if (!scene.environmentMap) scene.assumedSky = findSky(picture, frame);
   if (scene.assumedSky) {
     addDaylight(scene, *scene.assumedSky);
@@ -143,7 +188,8 @@ std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdde
 }
 
 bool firstFloorIsDark(const Scene& scene, const Geometry& geometry) {
-  return brightnessOf(scene, geometry, meter->picture(firstFrame(scene, geometry)), true).floor <= kDark;
+  const Picture picture = meter->picture(firstFrame(scene, geometry));
+  return floorBrightness(picture, partsOf(scene, geometry, picture, true).floor) <= kDark;
 }
 
 float firstExposure(const Scene& scene, const Geometry& geometry) {
