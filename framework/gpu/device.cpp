@@ -26,10 +26,14 @@ F load(VkInstance instance, const char* name) {
 
 std::vector<DeviceInfo> listDevices() {
   bool debugUtils = false;
-  const VkInstance instance = createInstance(Validation::Off, nullptr, debugUtils);
+  const struct Scope {
+    VkInstance instance;
+    ~Scope() {
+      if (instance) vkDestroyInstance(instance, nullptr);
+    }
+  } scope{createInstance(Validation::Off, nullptr, debugUtils)};
   std::vector<DeviceInfo> list;
-  for (PhysicalDevice& d : physicalDevices(instance)) list.push_back(std::move(d.info));
-  if (instance) vkDestroyInstance(instance, nullptr);
+  for (PhysicalDevice& d : physicalDevices(scope.instance)) list.push_back(std::move(d.info));
   return list;
 }
 
@@ -110,7 +114,7 @@ void Device::Impl::createInstanceAndMessenger(const DeviceOptions& options) {
   if (!instance || !debugUtils) return;
   if (options.validation != Validation::Off) {
     const auto create = load<PFN_vkCreateDebugUtilsMessengerEXT>(instance, "vkCreateDebugUtilsMessengerEXT");
-    check(create(instance, &info, nullptr, &messenger), "creating the validation messenger");
+    checkOpening(create(instance, &info, nullptr, &messenger), "creating the validation messenger");
   }
   loadLabels();
 }
@@ -193,12 +197,8 @@ void Device::Impl::createDevice(const FeatureChain& enabled) {
   deviceInfo.pQueueCreateInfos = &queueInfo;
   deviceInfo.enabledExtensionCount = uint32_t(extensions.size());
   deviceInfo.ppEnabledExtensionNames = extensions.data();
-  const VkResult result = vkCreateDevice(physical, &deviceInfo, nullptr, &device);
-  if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_FEATURE_NOT_PRESENT ||
-      result == VK_ERROR_UNKNOWN)
-    throw Error(ExitCode::NoDevice, "device `" + info.name + "` refuses to start: " + resultName(result),
-                "choose another device or update its driver");
-  check(result, "creating the device `" + info.name + "`");
+  checkOpening(vkCreateDevice(physical, &deviceInfo, nullptr, &device),
+               "starting the device `" + info.name + "`");
   vkGetDeviceQueue(device, queueFamily, 0, &queue);
 }
 
@@ -214,7 +214,7 @@ void Device::Impl::start(const FeatureChain& enabled, const DeviceOptions& optio
   VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   poolInfo.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
   poolInfo.queueFamilyIndex = queueFamily;
-  check(vkCreateCommandPool(device, &poolInfo, nullptr, &pool), "creating a command pool");
+  checkOpening(vkCreateCommandPool(device, &poolInfo, nullptr, &pool), "creating a command pool");
   createCaches(options);
 }
 
@@ -244,7 +244,8 @@ void Device::Impl::createCaches(const DeviceOptions& options) {
   if (vkCreatePipelineCache(device, &cacheInfo, nullptr, &pipelineCache) != VK_SUCCESS) {
     cacheInfo.initialDataSize = 0;
     initial.clear();
-    check(vkCreatePipelineCache(device, &cacheInfo, nullptr, &pipelineCache), "creating the pipeline cache");
+    checkOpening(vkCreatePipelineCache(device, &cacheInfo, nullptr, &pipelineCache),
+                 "creating the pipeline cache");
   }
   pipelineCacheHash = XXH3_64bits(initial.data(), initial.size());
 }

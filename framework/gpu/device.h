@@ -128,6 +128,9 @@ class Device {
 
 // Throws Error with the exit code that corresponds to the result: OutOfMemory, DeviceLost, otherwise Internal.
 void check(VkResult result, const std::string& what);
+// The same for calls that look for devices and open one. Whatever is neither a lack of memory nor a lost device is the
+// fault of the driver there, or of how it is installed: NoDevice.
+void checkOpening(VkResult result, const std::string& what);
 const char* resultName(VkResult result);
 
 }  // namespace fovea::gpu

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "fovea/error.h"
+#include "framework/gpu/driver_files.h"
 
 namespace fovea::gpu {
 namespace {
@@ -57,20 +58,56 @@ bool hasExtension(const std::vector<VkExtensionProperties>& list, const char* na
                      [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
-std::vector<VkExtensionProperties> instanceExtensions(const char* layer) {
+// A list that a function of Vulkan gives in two calls, with its length and its items. It may grow in between.
+template <class Item, class List>
+VkResult listed(std::vector<Item>& items, const List& list) {
   uint32_t count = 0;
-  vkEnumerateInstanceExtensionProperties(layer, &count, nullptr);
-  std::vector<VkExtensionProperties> list(count);
-  vkEnumerateInstanceExtensionProperties(layer, &count, list.data());
-  list.resize(count);
+  VkResult result = VK_INCOMPLETE;
+  for (int attempt = 0; result == VK_INCOMPLETE && attempt < 10; ++attempt) {
+    result = list(&count, nullptr);
+    if (result != VK_SUCCESS) break;
+    items.resize(count);
+    result = list(&count, items.data());
+  }
+  items.resize(result == VK_SUCCESS ? count : 0);
+  return result;
+}
+
+// Of the loader, which reports a lack of memory also when it cannot read the description of a driver.
+void checkLoader(VkResult result, const std::string& what) {
+  if (result == VK_SUCCESS) return;
+  const std::filesystem::path damaged =
+      result == VK_ERROR_OUT_OF_HOST_MEMORY ? damagedDriverFile() : std::filesystem::path();
+  if (!damaged.empty())
+    throw Error(ExitCode::NoDevice,
+                "the Vulkan loader does not start, because the description of a driver, " + damaged.string() +
+                    ", is damaged",
+                "install the driver again, or remove the file");
+  if (result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
+    checkOpening(result, what);
+  throw Error(ExitCode::NoDevice,
+              "the Vulkan loader does not start: " + what + " failed: " + resultName(result),
+              "a driver, a layer or the description of one (a .json file in vulkan/icd.d, or named in "
+              "VK_DRIVER_FILES or VK_ICD_FILENAMES) is damaged: install it again");
+}
+
+std::vector<VkExtensionProperties> instanceExtensions(const char* layer) {
+  std::vector<VkExtensionProperties> list;
+  checkLoader(listed(list,
+                     [&](uint32_t* count, VkExtensionProperties* items) {
+                       return vkEnumerateInstanceExtensionProperties(layer, count, items);
+                     }),
+              "listing the extensions");
   return list;
 }
 
 void requireValidationLayer() {
-  uint32_t count = 0;
-  vkEnumerateInstanceLayerProperties(&count, nullptr);
-  std::vector<VkLayerProperties> layers(count);
-  vkEnumerateInstanceLayerProperties(&count, layers.data());
+  std::vector<VkLayerProperties> layers;
+  checkLoader(listed(layers,
+                     [](uint32_t* count, VkLayerProperties* items) {
+                       return vkEnumerateInstanceLayerProperties(count, items);
+                     }),
+              "listing the layers");
   for (const VkLayerProperties& layer : layers) {
     if (std::strcmp(layer.layerName, kValidationLayer) == 0) return;
   }
@@ -132,18 +169,14 @@ std::vector<std::string> missingFeatures(VkPhysicalDevice device,
   return missing;
 }
 
-std::vector<std::string> missingDispensables(VkPhysicalDevice device) {
+std::vector<std::string> missingDispensables(VkPhysicalDevice device,
+                                             const std::vector<VkExtensionProperties>& extensions) {
   std::vector<std::string> missing;
   FeatureChain features;
   vkGetPhysicalDeviceFeatures2(device, &features.core);
   for (const auto& [name, value] : features.dispensable()) {
     if (!*value) missing.push_back(name);
   }
-  uint32_t count = 0;
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "counting extensions");
-  std::vector<VkExtensionProperties> extensions(count);
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
-        "listing extensions");
   for (const char* name : kDispensableExtensions) {
     if (!hasExtension(extensions, name)) missing.push_back(name);
   }
@@ -180,7 +213,19 @@ PhysicalDevice describe(VkPhysicalDevice handle, uint32_t index) {
       d.info.memoryBytes = std::max<uint64_t>(d.info.memoryBytes, memory.memoryHeaps[i].size);
   }
   d.info.missing = missingFeatures(handle, base);
-  if (d.info.missing.empty()) d.info.without = missingDispensables(handle);
+  if (d.info.missing.empty()) {
+    std::vector<VkExtensionProperties> extensions;
+    const VkResult result = listed(extensions, [&](uint32_t* count, VkExtensionProperties* items) {
+      return vkEnumerateDeviceExtensionProperties(handle, nullptr, count, items);
+    });
+    // A device whose driver is damaged must not hide the others.
+    if (result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
+      checkOpening(result, "listing the extensions of the device `" + d.info.name + "`");
+    if (result == VK_SUCCESS)
+      d.info.without = missingDispensables(handle, extensions);
+    else
+      d.info.missing.push_back(std::string("a list of its extensions (") + resultName(result) + ")");
+  }
   d.queueFamily = uint32_t(std::max(0, findQueueFamily(handle)));
   return d;
 }
@@ -322,7 +367,7 @@ FeatureChain::List FeatureChain::optional() {
 VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCreateInfoEXT* messenger,
                           bool& debugUtils) {
   uint32_t loader = VK_API_VERSION_1_0;
-  vkEnumerateInstanceVersion(&loader);
+  checkLoader(vkEnumerateInstanceVersion(&loader), "asking for its version");
   if (loader < VK_API_VERSION_1_3) {
     throw Error(ExitCode::NoDevice,
                 "the Vulkan loader is version " + versionText(loader) + "; fovea needs 1.3",
@@ -361,25 +406,20 @@ VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCrea
   VkInstance instance = VK_NULL_HANDLE;
   const VkResult result = vkCreateInstance(&info, nullptr, &instance);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return VK_NULL_HANDLE;
-  // The loader reports a lack of memory, too, when it cannot read the description of a driver.
-  if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-    throw Error(ExitCode::NoDevice, std::string("the Vulkan loader does not start: ") + resultName(result),
-                "a driver or its description (a .json file in vulkan/icd.d, or named in VK_DRIVER_FILES or "
-                "VK_ICD_FILENAMES) is damaged: install it again");
-  check(result, "creating the Vulkan instance");
+  checkLoader(result, "creating the Vulkan instance");
   return instance;
 }
 
 std::vector<PhysicalDevice> physicalDevices(VkInstance instance) {
   if (!instance) return {};
-  uint32_t count = 0;
-  const VkResult result = vkEnumeratePhysicalDevices(instance, &count, nullptr);
+  std::vector<VkPhysicalDevice> handles;
+  const VkResult result = listed(handles, [&](uint32_t* count, VkPhysicalDevice* items) {
+    return vkEnumeratePhysicalDevices(instance, count, items);
+  });
   if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_INCOMPATIBLE_DRIVER) return {};
-  check(result, "listing the Vulkan devices");
-  std::vector<VkPhysicalDevice> handles(count);
-  check(vkEnumeratePhysicalDevices(instance, &count, handles.data()), "listing the Vulkan devices");
+  checkOpening(result, "listing the Vulkan devices");
   std::vector<PhysicalDevice> list;
-  for (uint32_t i = 0; i < count; ++i) list.push_back(describe(handles[i], i));
+  for (uint32_t i = 0; i < handles.size(); ++i) list.push_back(describe(handles[i], i));
   return list;
 }
 

@@ -40,10 +40,12 @@ struct PhysicalDevice {
 };
 
 // VK_NULL_HANDLE if there is no driver at all. `debugUtils` tells whether VK_EXT_debug_utils is enabled. Throws
-// Error(NoDevice) if the validation layer is requested but absent, or if the loader is older than 1.3.
+// Error(NoDevice) if the validation layer is requested but absent, if the loader is older than 1.3, or if a driver or a
+// layer or its description is damaged, and Error(OutOfMemory).
 VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCreateInfoEXT* messenger,
                           bool& debugUtils);
 
+// Those whose driver cannot say what they offer lack that. Throws Error(NoDevice) and Error(OutOfMemory).
 std::vector<PhysicalDevice> physicalDevices(VkInstance instance);
 
 // A device that somebody else has made, with what is enabled as what there is; `enabled` receives its features. Throws

@@ -68,4 +68,20 @@ void check(VkResult result, const std::string& what) {
   }
 }
 
+void checkOpening(VkResult result, const std::string& what) {
+  if (result == VK_SUCCESS) return;
+  const std::string text = what + " failed: " + resultName(result);
+  switch (result) {
+    case VK_ERROR_DEVICE_LOST:
+      return check(result, what);
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+    case VK_ERROR_TOO_MANY_OBJECTS:
+      throw Error(ExitCode::OutOfMemory, text,
+                  "end other programs, which take the memory of the computer or of the device");
+    default:
+      throw Error(ExitCode::NoDevice, text, "choose another device, or install its driver again");
+  }
+}
+
 }  // namespace fovea::gpu

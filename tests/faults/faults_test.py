@@ -73,6 +73,31 @@ class VulkanFaults(CliTest):
             with self.subTest(fault=fault):
                 self.fails(code, *DIRECT, "-o", "a.png", env=self.faults(fault), says=[says])
 
+    def test_opening_a_device(self):
+        """Whatever fails until there is a device is a lack of memory, a lost device, or the fault of the driver."""
+        lost, broken = (-4, DEVICE_LOST), (-3, -6, -7, -8, -9, -13, -1000069000 + 1)
+        for function, calls in (("vkCreateInstance", 1), ("vkEnumeratePhysicalDevices", 2),
+                                ("vkEnumerateDeviceExtensionProperties", 4), ("vkCreateDevice", 1),
+                                ("vkCreateCommandPool", 1), ("vkCreatePipelineCache", 2)):
+            memory = [(-1, OUT_OF_MEMORY), (-2, OUT_OF_MEMORY)]
+            own = [lost] if function == "vkCreateDevice" else []
+            for result, code in memory + own + [(r, NO_DEVICE) for r in broken]:
+                for at in [*(f"@{i}" for i in range(calls)), ""] if calls > 1 else [""]:
+                    if function == "vkCreatePipelineCache" and at:
+                        continue  # without what was on the disk, there is one
+                    with self.subTest(function=function, result=result, at=at):
+                        run = self.call(*DIRECT, "-o", "a.png", env=self.faults(f"{function}={result}{at}"))
+                        if function == "vkEnumerateDeviceExtensionProperties" and at and run.returncode == 0:
+                            (self.folder / "a.png").unlink()  # a call by the loader
+                            continue
+                        self.assertEqual(run.returncode, code, run.stderr)
+                        self.assertRegex(run.stderr, "  -> ")
+                        self.assertNotIn("defect", run.stderr)
+                        self.assertNotIn("damaged", run.stderr if code == OUT_OF_MEMORY else "")
+                        self.assertFalse((self.folder / "a.png").exists())
+            self.assertEqual(self.call("devices", env=self.faults("vkEnumeratePhysicalDevices=-1")).returncode,
+                             OUT_OF_MEMORY)
+
     def test_every_function(self):
         """No call that fails is passed over in silence, crashes or leaves half a picture."""
         every = os.environ.get("FOVEA_FAULTS_ALL")
@@ -137,6 +162,7 @@ class Faults(CliTest):
         icd = str(self.folder / "icd.json")
         run = self.fails(NO_DEVICE, *DIRECT, "-o", "a.png", env={"VK_DRIVER_FILES": icd, "VK_ICD_FILENAMES": icd})
         self.assertNotIn("VPLs", run.stderr)
+        self.assertIn("icd.json", run.stderr)
 
     def test_memory(self):
         """Wherever the program cannot have memory, it ends with that message and without a picture."""
