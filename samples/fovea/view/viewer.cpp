@@ -199,7 +199,8 @@ void Viewer::follow(const std::vector<Command>& commands) {
     }
     motion_.apply(command);
     restarts |= command.restart || command.recording.value_or(false);
-    if (command.recording) exchange_.setRecording(motion_.gazeTable(), motion_.cameraKeys(build_->scene->scene.origin));
+    if (command.recording)
+      exchange_.setRecording(motion_.gazeTable(), motion_.cameraKeys(build_->scene->scene.origin));
   }
   try {
     if (changes || restarts)

@@ -219,7 +219,8 @@ void Viewer::sendTick() {
             {"bytes", device_->allocatedBytes()},
             {"times", times_}};
   if (tev_) tick["tev"] = {{"source", tev_->source()}, {"connected", tev_->connected()}};
-  if (motion_.recording()) exchange_.setRecording(motion_.gazeTable(), motion_.cameraKeys(build_->scene->scene.origin));
+  if (motion_.recording())
+    exchange_.setRecording(motion_.gazeTable(), motion_.cameraKeys(build_->scene->scene.origin));
   exchange_.setTick(textOf(tick));
 }
 
