@@ -19,10 +19,11 @@ targets=("$@")
 good=tests/data/hostile/good
 seeds() {
   case $1 in
-    gaze_fuzz) ls $good/*.csv samples/scenes/gazes/*.csv ;;
+    gaze_fuzz) ls $good/*.csv samples/scenes/gazes/*.csv tests/fuzz/corpus/gaze/* ;;
     gltf_fuzz) ls $good/*.gl* tests/fuzz/corpus/gltf/* ;;
     image_fuzz) ls tests/fuzz/corpus/image/* ;;
     graph_fuzz) ls tests/fuzz/corpus/graph/* ;;
+    option_fuzz) ls tests/fuzz/corpus/option/* ;;
     pass_file_fuzz) ls samples/own_pass/files/passes/*.pass.json $good/*.pass.json ;;
     scene_file_fuzz) ls samples/scenes/*.json $good/scene*.json ;;
     suite_fuzz) ls benchmarks/suites/*.json $good/suite*.json ;;
