@@ -70,7 +70,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return number_float(static_cast<double>(v), {});
   }
   bool number_float(number_float_t v, const string_t&) override {
-    return scalar(Value::Type::Real, [&](Value& value) { value.real = v; });
+    return scalar(Value::Type::Real, [&](Value& value) { value.setReal(v); });
   }
   bool string(string_t& v) override {
     return scalar(Value::Type::String, [&](Value& value) { value.string = std::move(v); });
@@ -223,11 +223,12 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
 
 }  // namespace
 
-std::optional<int64_t> Value::whole() const {
-  constexpr double kExact = 9007199254740992.0;  // 2^53, up to which doubles hold all whole numbers
-  if (type == Type::Int) return integer;
-  if (type != Type::Real || std::abs(real) > kExact || std::trunc(real) != real) return std::nullopt;
-  return static_cast<int64_t>(real);
+void Value::setReal(double number) {
+  constexpr double kBeyondInteger = 9223372036854775808.0;  // 2^63
+  type = Type::Real;
+  real = number;
+  integer =
+      std::abs(number) < kBeyondInteger && number == std::trunc(number) ? static_cast<int64_t>(number) : 0;
 }
 
 std::string Value::describe() const {

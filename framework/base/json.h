@@ -36,16 +36,17 @@ struct Value {
   bool boolean = false;
   std::string string;           // String
   std::vector<Member> members;  // Object, in the order of the file; keys are unique
-  int64_t integer = 0;          // Int
+  int64_t integer = 0;          // Int, and Real if it is whole; otherwise 0
   double real = 0;              // Real and Int; always finite
   std::vector<Value> items;     // Array
   Position where;               // first character of the value
 
   bool isNull() const { return type == Type::Null; }
   bool isBool() const { return type == Type::Bool; }
-  bool isInt() const { return type == Type::Int; }
-  // The number if it is whole, however it is written: 500, 500.0 or 5e2.
-  std::optional<int64_t> whole() const;
+  // A whole number, however it is written: 4, 4.0 and 4e0 are the same number. `type` keeps the spelling.
+  bool isInt() const {
+    return type == Type::Int || (type == Type::Real && real == static_cast<double>(integer));
+  }
   bool isNumber() const { return type == Type::Int || type == Type::Real; }
   bool isString() const { return type == Type::String; }
   bool isArray() const { return type == Type::Array; }
@@ -53,6 +54,8 @@ struct Value {
 
   const Member* findMember(std::string_view key) const;  // nullptr also if this is not an object
   const Value* find(std::string_view key) const;
+  // Makes it a number of type Real.
+  void setReal(double number);
   // For messages that say what was found: "an object", "the number 3.5", "the text \"abc\"".
   std::string describe() const;
 };

@@ -96,6 +96,22 @@ TEST(Json, NumbersKeepTheirKind) {
   EXPECT_EQ(v.items[5].type, Type::Int);
 }
 
+TEST(Json, WholeNumbersInEverySpelling) {
+  for (const char* text : {"500", "500.0", "5e2", "5E+2", "0.5e3", "50000e-2", "5.00e2"}) {
+    const Value v = parse(text, "f.json");
+    EXPECT_TRUE(v.isInt()) << text;
+    EXPECT_EQ(v.integer, 500) << text;
+    EXPECT_EQ(v.real, 500.0) << text;
+  }
+  EXPECT_TRUE(parse("-0.0", "f.json").isInt());
+  EXPECT_TRUE(parse("-4.0", "f.json").isInt());
+  EXPECT_EQ(parse("-9.223372036854774e18", "f.json").integer, -9223372036854773760);
+  for (const char* text : {"500.5", "1e30", "-1e30", "9223372036854775808", "1e-3", "4.000001"}) {
+    EXPECT_FALSE(parse(text, "f.json").isInt()) << text;
+    EXPECT_EQ(parse(text, "f.json").integer, 0) << text;
+  }
+}
+
 struct Bad {
   const char* text;
   const char* where;
@@ -141,11 +157,14 @@ TEST(Json, AByteOrderMarkAndCrLfAreNoPartOfTheText) {
 }
 
 TEST(Json, WholeNumbersHoweverTheyAreWritten) {
-  for (const char* text : {"500", "500.0", "5e2", "0.5E3"}) EXPECT_EQ(parse(text, "f").whole(), 500) << text;
-  EXPECT_EQ(parse("-0.0", "f").whole(), 0);
-  EXPECT_EQ(parse("9007199254740993", "f").whole(), 9007199254740993);
+  for (const char* text : {"500", "500.0", "5e2", "0.5E3"}) {
+    EXPECT_TRUE(parse(text, "f").isInt()) << text;
+    EXPECT_EQ(parse(text, "f").integer, 500) << text;
+  }
+  EXPECT_TRUE(parse("-0.0", "f").isInt());
+  EXPECT_EQ(parse("9007199254740993", "f").integer, 9007199254740993);
   for (const char* text : {"500.5", "1e30", "-1e-9", "\"500\"", "true", "null", "[5]"})
-    EXPECT_FALSE(parse(text, "f").whole()) << text;
+    EXPECT_FALSE(parse(text, "f").isInt()) << text;
 }
 
 TEST(Json, ANulByteIsNotTheEnd) {

@@ -310,6 +310,12 @@ TEST(LocatedErrors, OfTheCommandLine) {
   EXPECT_THAT(errorsOf(graph, {{"n", "99"}}),
               ElementsAre("--set n=99: error: parameter `count`: expected a whole number from 1 to 10, found "
                           "99 (at passes.a.params.count)"));
+  for (const char* text : {"5e0", "5.0", "0.5e1", "5", "1", "10.0"})
+    EXPECT_THAT(errorsOf(graph, {{"a.count", text}}), ElementsAre()) << text;
+  for (const char* text : {"5.5", "-1", "1e30", "4294967296", "many", "NaN", "0x5", "+5", "05"})
+    EXPECT_THAT(errorsOf(graph, {{"a.count", text}}),
+                ElementsAre(testing::HasSubstr("expected a whole number from 1 to 10, found ")))
+        << text;
   EXPECT_THAT(errorsOf(graph, {{"a.count", "many"}}),
               ElementsAre("--set a.count=many: error: parameter `count`: expected a whole number from 1 to "
                           "10, found `many` (at passes.a.params.count)"));
@@ -320,6 +326,21 @@ TEST(LocatedErrors, OfTheCommandLine) {
   EXPECT_THAT(errorsOf(graph, {{"a.cuont", "1"}}),
               ElementsAre("--set a.cuont=1: error: `source` has no parameter `cuont` (at "
                           "passes.a.params.cuont)\n  -> did you mean `count`?"));
+}
+
+// JSON has one kind of number: 5, 5.0 and 5e0 are the same.
+TEST(LocatedErrors, WholeNumbersInEverySpelling) {
+  const auto errors = [](const std::string& number) {
+    return errorsOf((R"({"parameters": {"n": )" + number + R"(}, "passes": {"a": {"type": "source",
+        "params": {"count": "$n"}}}, "outputs": {"o": "a"}})")
+                        .c_str());
+  };
+  using testing::ElementsAre;
+  for (const char* text : {"5e0", "5.0", "0.5e1", "5.000", "50e-1"})
+    EXPECT_THAT(errors(text), ElementsAre()) << text;
+  for (const char* text : {"5.5", "-1", "-1.0", "1e30", "4294967296", "\"5\"", "10.5"})
+    EXPECT_THAT(errors(text), ElementsAre(testing::HasSubstr("expected a whole number from 1 to 10, found ")))
+        << text;
 }
 
 TEST(LocatedErrors, AllOfAFileAtOnce) {

@@ -130,6 +130,21 @@ TEST_F(PassFiles, DeclareAPass) {
   EXPECT_NE(registry_.create("blur"), nullptr);
 }
 
+// 1.0 is a whole number wherever one is expected, but as a default it declares a real parameter.
+TEST_F(PassFiles, WholeNumbersInEverySpelling) {
+  EXPECT_EQ(
+      reported(
+          R"({"doc": "x", "outputs": {"image": {"doc": "x", "format": "rgba8", "width": 8.0, "height": 8e0}},
+      "params": {"count": {"doc": "x", "default": 2, "min": 1.0, "max": 9e0}, "share": {"doc": "x", "default": 1.0}},
+      "steps": [{"shader": "a.comp", "over": "image"}]})"),
+      "");
+  const PassDeclaration* d = registry_.find("blur");
+  ASSERT_NE(d, nullptr);
+  EXPECT_EQ(d->findPort("image")->members[0].resource.width.print(), "8");
+  EXPECT_EQ(d->parameters[0].type, ParameterSpec::Type::Int);
+  EXPECT_EQ(d->parameters[1].type, ParameterSpec::Type::Real);
+}
+
 TEST_F(PassFiles, InputsUnderACondition) {
   const auto file = [](const char* condition) {
     return fmt::format(R"({{"doc": "x", "inputs": {{"a": {{"doc": "x", "when": "{}"}}}},

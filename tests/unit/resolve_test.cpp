@@ -273,6 +273,8 @@ TEST(Overrides, WrongValuesAreErrors) {
               HasSubstr("--set b=yes: error: `b` is true or false, not `yes`"));
   EXPECT_THAT(resolved(kGraph, {{"r", "inf"}}).messages.format(), HasSubstr("`r` is a number, not `inf`"));
   EXPECT_THAT(resolved(kGraph, {{"n", "5x"}}).messages.format(), HasSubstr("`n` is a number, not `5x`"));
+  for (const char* text : {"0500", "-0500", "00", "+500", "0x1f4", "NaN", "nan", "five", ""})
+    EXPECT_THAT(resolved(kGraph, {{"n", text}}).messages.format(), HasSubstr("`n` is a number, not")) << text;
   EXPECT_THROW(parseOverride("novalue"), Error);
   EXPECT_THROW(parseOverride("=5"), Error);
   EXPECT_EQ(parseOverride("a.b=c=d").value, "c=d");

@@ -41,8 +41,8 @@ bool assign(const ParameterSpec& spec, const json::Value& given, Value& out) {
       if (given.isBool()) out = given.boolean;
       return given.isBool();
     case Type::Int:
-      if (!given.whole() || !inRange) return false;
-      out = *given.whole();
+      if (!given.isInt() || !inRange) return false;
+      out = given.integer;
       return true;
     case Type::Real:
       if (!given.isNumber() || !inRange) return false;

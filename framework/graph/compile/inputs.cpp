@@ -17,12 +17,12 @@ int64_t readSize(Expansion& all, Scope& scope, json::ObjectReader& reader, const
   const json::Value* value = reader.find(key);
   ParameterDescription size;
   if (!value || !readScalar(all, scope, *value, size)) return fallback;
-  std::optional<int64_t> number = size.value->whole();
-  if (size.value->isString() && size.fromCommandLine) {
+  json::Value number = *size.value;
+  if (number.isString() && size.fromCommandLine) {
     json::Value typed;
-    if (readTyped(size.value->string, json::Value::Type::Int, typed)) number = typed.whole();
+    if (readTyped(number.string, json::Value::Type::Int, typed)) number = typed;
   }
-  if (number && *number >= 1 && *number <= int64_t(1) << 31) return *number;
+  if (number.isInt() && number.integer >= 1 && number.integer <= int64_t(1) << 31) return number.integer;
   report(all, scope, *value,
          fmt::format("`{}`: expected a whole number from 1 to {}, found {}", key, int64_t(1) << 31,
                      value->describe()));

@@ -463,9 +463,13 @@ bool readTyped(const std::string& text, json::Value::Type type, json::Value& out
   }
   const std::optional<double> number = parseDecimal(text);
   if (!number) return false;
-  out.type = Type::Real;
-  out.real = *number;
-  if (const std::optional<int64_t> whole = out.whole()) out.type = Type::Int, out.integer = *whole;
+  out.setReal(*number);
+  int64_t whole = 0;  // exact, also where doubles are not
+  const char *begin = text.data(), *end = begin + text.size();
+  if (const auto r = std::from_chars(begin, end, whole); r.ec == std::errc() && r.ptr == end) {
+    out.type = Type::Int;
+    out.integer = whole;
+  }
   return true;
 }
 

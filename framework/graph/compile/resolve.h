@@ -97,7 +97,8 @@ std::shared_ptr<const json::Value> mergeExtends(std::shared_ptr<const json::Valu
 std::filesystem::path findGraphFile(const std::string& name, const std::filesystem::path& from,
                                     const std::vector<std::filesystem::path>& searchPaths);
 
-// Reads text from the command line: as true or false if `type` is Bool, otherwise as a number. False if it is none.
+// Reads text from the command line: as true or false if `type` is Bool, otherwise as a number, which is
+// written as in JSON. False if it is none.
 bool readTyped(const std::string& text, json::Value::Type type, json::Value& out);
 
 // Limits of a graph file, so that a file cannot exhaust memory.

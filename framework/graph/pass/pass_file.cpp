@@ -272,7 +272,7 @@ class Reader {
     } else if (value.isBool()) {
       spec.type = Type::Bool;
       spec.defaultValue = value.boolean;
-    } else if (value.isInt()) {
+    } else if (value.type == json::Value::Type::Int) {  // the spelling decides: 1.0 declares a real parameter
       spec.type = Type::Int;
       spec.defaultValue = value.integer;
     } else {

@@ -229,7 +229,8 @@ Json graphParametersJson(const std::vector<GraphParameter>& parameters, const st
     json["name"] = p.name;
     json["default"] = valueJson(*p.written);
     if (!p.spec && p.written->isBool()) json["type"] = "bool";
-    if (!p.spec && p.written->isNumber()) json["type"] = p.written->isInt() ? "int" : "real";
+    if (!p.spec && p.written->isNumber())
+      json["type"] = p.written->type == json::Value::Type::Int ? "int" : "real";
     if (!p.choices.empty()) {
       json["type"] = "choice";
       json["choices"] = p.choices;
