@@ -90,6 +90,7 @@ class Kernel {
   const vec3& scenePosition(uint vertex) const { return geometry_.positions[vertex]; }
   const vec3& sceneNormal(uint vertex) const { return geometry_.normals[vertex]; }
   const vec2& sceneUv(uint vertex) const { return geometry_.uvs[vertex]; }
+  float sceneAlpha(uint vertex) const { return geometry_.colors.empty() ? 1.0f : geometry_.colors[vertex].a; }
   vec4 sceneTexel(ivec3 p, bool linear) const { return scene_.texel(p, linear); }
   ivec2 environmentSize() const { return scene_.environmentSize(); }
   vec3 environmentTexel(ivec2 p) const { return scene_.environmentTexel(p); }

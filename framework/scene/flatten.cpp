@@ -174,7 +174,7 @@ class Flattener {
     const size_t joints = node.skin < scene_.skins.size() ? scene_.skins[node.skin].joints.size() : 0;
     const auto check = [&](size_t vertices, const auto& shape) {
       bool fits = shape.joints.size() == shape.weights.size() &&
-                  (shape.joints.empty() || shape.joints.size() == vertices);
+                  (shape.joints.empty() || (vertices > 0 && shape.joints.size() % vertices == 0));
       for (const MorphTarget& t : shape.targets)
         for (const auto* list : {&t.positions, &t.normals})
           fits = fits && (list->empty() || list->size() == vertices);

@@ -17,6 +17,7 @@ void hash(Hasher& h, const TextureUse& use) {
   h.add(uint32_t(use.wrapV));
   h.add(&use.transform[0][0], 6);
   if (use.set != 0) h.add(use.set);
+  if (use.nearest) h.add(~0u);
 }
 
 void hash(Hasher& h, const Material& m) {

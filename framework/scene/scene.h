@@ -16,8 +16,8 @@ std::vector<glm::mat4> worldTransforms(const Scene& scene);
 // 65535 materials or objects.
 Geometry flatten(const Scene& scene);
 
-// Bilinear look-up at LOD 0, exactly as in shaders/scene/scene.glsl; linear RGBA. `uv` is given before the
-// transform of `use`.
+// Look-up at LOD 0, bilinear or of the nearest texel, exactly as in shaders/scene/scene.glsl; linear RGBA. `uv` is given
+// before the transform of `use`.
 glm::vec4 sampleTexture(const Scene& scene, const TextureUse& use, glm::vec2 uv);
 // Diffuse reflectance and alpha of a material at uv.
 glm::vec4 reflectance(const Scene& scene, const Material& material, glm::vec2 uv);

@@ -12,7 +12,7 @@
 namespace fovea::scene {
 
 // The four texels of a look-up: left and right column, upper and lower row, and the weights of the right column and
-// the lower row. LOD 0, bilinear, texel centres at half-integers.
+// the lower row. LOD 0, texel centres at half-integers; bilinear, unless TextureUse::nearest, where the weights are 0.
 struct TexelSquare {
   uint32_t column[2] = {}, row[2] = {};
   float right = 0, lower = 0;
@@ -43,7 +43,8 @@ inline TexelSquare texelSquare(uint32_t width, uint32_t height, const TextureUse
     return std::isfinite(texels) ? std::min(std::max(texels, -1e9f), 1e9f) : 0.0f;
   };
   const glm::vec2 p = use.transform * glm::vec3(uv, 1.0f);
-  const float u = tame(p.x * float(width) - 0.5f), v = tame(p.y * float(height) - 0.5f);
+  const float middle = use.nearest ? 0.0f : 0.5f;
+  const float u = tame(p.x * float(width) - middle), v = tame(p.y * float(height) - middle);
   const auto floored = [](float f) { return int32_t(f) - int32_t(float(int32_t(f)) > f); };
   const int32_t x = floored(u), y = floored(v);
   TexelSquare s;
@@ -51,6 +52,7 @@ inline TexelSquare texelSquare(uint32_t width, uint32_t height, const TextureUse
     s.column[i] = wrapTexel(x + i, int32_t(width), use.wrapU);
     s.row[i] = wrapTexel(y + i, int32_t(height), use.wrapV);
   }
+  if (use.nearest) return s;
   s.right = u - float(x);
   s.lower = v - float(y);
   return s;

@@ -83,8 +83,9 @@ void main() {
   // Of normal, albedo and emission.
   vec3 alphas = vec3(surface.gloss.f90, surface.gloss.metallic, surface.gloss.dielectricF0);
 #if TINT
+  float alphaOf = dot(vec3(sceneAlpha(triangle.x), sceneAlpha(triangle.y), sceneAlpha(triangle.z)), weights);
   bool own = (flags & kMaterialTransmits) != 0u ||
-             ((flags & kMaterialBlended) != 0u && coverage(material, uv) < kSolid);
+             ((flags & kMaterialBlended) != 0u && coverage(material, uv, alphaOf) < kSolid);
   if ((own && !background) || before.a > 0.0) alphas.x = -max(alphas.x, kLeastGrazing);
 #endif
 #else

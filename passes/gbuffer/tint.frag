@@ -8,6 +8,7 @@
 const float kNothingCovered = 0.5 / 255.0;  // an alpha of 0
 
 layout(location = 0) in vec2 uv;
+layout(location = 3) in float alpha;  // of the vertex colours
 layout(location = 0) out vec4 tint;
 
 void main() {
@@ -18,6 +19,6 @@ void main() {
   if (!gl_FrontFacing && (flags & kMaterialDoubleSided) == 0u) discard;
 #endif
   bool glass = (flags & kMaterialTransmits) != 0u;
-  if (!glass && coverage(material, uv) < kNothingCovered) discard;
+  if (!glass && coverage(material, uv, alpha) < kNothingCovered) discard;
   tint = vec4(glass ? log(glassTint(material, uv)) : vec3(0.0), 1.0);
 }

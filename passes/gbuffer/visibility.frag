@@ -7,6 +7,7 @@
 
 #if TESTED
 layout(location = 0) in vec2 uv;
+layout(location = 3) in float alpha;  // of the vertex colours
 #if PASSAGE
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 toEye;
@@ -26,9 +27,9 @@ void main() {
   // The same decision as in look() of rays/surfaces.glsl.
   uint key = hashCombine(hashCombine(frame.seed, kPassageStream), triangle);
   float chance = passageChance(key, uvec2(gl_FragCoord.xy), frame.index);
-  if (!stops(material, uv, abs(dot(normalize(normal), normalize(toEye))), chance)) discard;
+  if (!stops(material, uv, alpha, abs(dot(normalize(normal), normalize(toEye))), chance)) discard;
 #else
-  if (!(coverage(material, uv) > kEitherWay)) discard;
+  if (!(coverage(material, uv, alpha) > kEitherWay)) discard;
 #endif
 #endif
   visible = triangle;

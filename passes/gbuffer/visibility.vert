@@ -3,6 +3,7 @@
 
 #if TESTED
 layout(location = 0) out vec2 uv;
+layout(location = 3) out float alpha;  // of the vertex colour
 #if PASSAGE
 layout(location = 1) out vec3 normal;
 layout(location = 2) out vec3 toEye;
@@ -15,6 +16,7 @@ void main() {
   gl_Position = view.worldToClip * vec4(position, 1.0);
 #if TESTED
   uv = sceneUv(vertex);
+  alpha = sceneAlpha(vertex);
 #if PASSAGE
   normal = sceneNormal(vertex);
   toEye = view.eye - position;

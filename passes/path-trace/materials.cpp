@@ -79,7 +79,8 @@ float Materials::coverage(const Material& m, const RayHit& hit) const {
   if (!m.blended) return 1;
   TextureUse use = m.baseColorTexture;
   use.set = 0;
-  return std::clamp(m.baseColor.a * texel(use, hit).a, 0.0f, 1.0f);
+  const float vertex = geometry_.colors.empty() ? 1.0f : interpolated(geometry_.colors, hit).a;
+  return std::clamp(vertex * m.baseColor.a * texel(use, hit).a, 0.0f, 1.0f);
 }
 
 BsdfParameters Materials::bsdf(const Material& m, const RayHit& hit) const {

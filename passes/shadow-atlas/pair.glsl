@@ -32,6 +32,7 @@ struct Pair {
   ivec3 origin;  // origin of the VPL's map in the atlas
   uint material, triangle;
   vec2 uvA, uvB, uvC;
+  vec3 alphas;  // of the vertex colours
 #ifdef MOVER_SLACK
   float slack;  // m
 #endif
@@ -72,6 +73,7 @@ Pair loadPair(uint word, int size, float planeEpsilon, bool clipped
   pair.uvA = texelOf(sceneAttributes, int(triangle.vertices.x)).zw;
   pair.uvB = texelOf(sceneAttributes, int(triangle.vertices.y)).zw;
   pair.uvC = texelOf(sceneAttributes, int(triangle.vertices.z)).zw;
+  pair.alphas = vec3(sceneAlpha(triangle.vertices.x), sceneAlpha(triangle.vertices.y), sceneAlpha(triangle.vertices.z));
 #endif
   return pair;
 }
@@ -87,7 +89,8 @@ void rasterise(Pair pair, vec2 texel, bool inside, float toMap) {
   uint key = hashCombine(hashCombine(origin.x << 16 | origin.y, origin.z), pair.triangle);
   float chance = passageChance(key, uvec2(texel), 0u);
   vec2 uv = weights.x * pair.uvC + weights.y * pair.uvA + weights.z * pair.uvB;
-  hit = hit && stops(pair.material, uv, kMeanCosine, chance);
+  float alpha = dot(weights, vec3(pair.alphas.z, pair.alphas.x, pair.alphas.y));
+  hit = hit && stops(pair.material, uv, alpha, kMeanCosine, chance);
 #endif
 #ifdef MOVER_SLACK
   distance_ += min(pair.slack, kMostSlack * distance_);

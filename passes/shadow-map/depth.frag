@@ -6,13 +6,14 @@
 #include "scene/scene.glsl"
 
 layout(location = 0) in vec2 uv;
+layout(location = 3) in float alpha;  // of the vertex colours
 
 void main() {
   uint triangle = drawnTriangle(), material = materialOf(sceneTriangle(triangle));
 #if PASSAGE
   float chance = passageChance(hashPcg(triangle), uvec2(gl_FragCoord.xy), 0u);
-  if (!stops(material, uv, kMeanCosine, chance)) discard;
+  if (!stops(material, uv, alpha, kMeanCosine, chance)) discard;
 #else
-  if (!(coverage(material, uv) > kEitherWay)) discard;
+  if (!(coverage(material, uv, alpha) > kEitherWay)) discard;
 #endif
 }

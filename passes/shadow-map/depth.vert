@@ -7,6 +7,7 @@ layout(std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsView
 
 #if TESTED
 layout(location = 0) out vec2 uv;
+layout(location = 3) out float alpha;  // of the vertex colour
 #endif
 
 void main() {
@@ -14,5 +15,6 @@ void main() {
   gl_Position = mapsViews.view[drawnLayer()].worldToClip * vec4(scenePosition(vertex), 1.0);
 #if TESTED
   uv = sceneUv(vertex);
+  alpha = sceneAlpha(vertex);
 #endif
 }

@@ -196,17 +196,16 @@ bool crossesCell(CellTriangle t, vec3 a, vec3 b, vec3 c, out Piece piece) {
          edgeHoldsCell(c.xy, a.xy, side);
 }
 
-// Texture coordinates at point p of the cell in which the first vertex has the coordinates a; both with permuted
-// axes.
-vec2 cellUv(CellTriangle t, uvec4 indices, vec3 a, vec3 p) {
+// Weights of the second and third vertex at point p of the cell in which the first vertex has the coordinates a; both
+// with permuted axes.
+vec2 cellWeights(CellTriangle t, vec3 a, vec3 p) {
   precise vec3 e1 = t.b - t.a;
   precise vec3 e2 = t.c - t.a;
   precise vec3 d = p - a;
   float inverse = quotient(1.0, t.n.z);
   precise float s = (d.x * e2.y - d.y * e2.x) * inverse;
   precise float r = (e1.x * d.y - e1.y * d.x) * inverse;
-  precise vec2 uv = sceneUv(indices.x) * (1.0 - s - r) + sceneUv(indices.y) * s + sceneUv(indices.z) * r;
-  return uv;
+  return vec2(s, r);
 }
 
 #endif

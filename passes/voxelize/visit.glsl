@@ -90,10 +90,14 @@ void visitCell(CellTriangle t, uint triangle, uvec4 indices, Material material, 
   Piece piece;
   if (!crossesCell(t, a, b, c, piece)) piece = clipToCell(t, a, b, c);
   if (fixedPoint(piece.area) < 1.0) return;
-  vec2 uv = cellUv(t, indices, a, piece.centre);
+  vec2 weights = cellWeights(t, a, piece.centre);
+  float s = weights.x, r = weights.y;
+  precise vec2 uv = sceneUv(indices.x) * (1.0 - s - r) + sceneUv(indices.y) * s + sceneUv(indices.z) * r;
   bool present = true;
-  if (material.alphaCutoff != 0.0)
-    present = stops(materialOf(indices), uv, kMeanCosine, kEitherWay);
+  if (material.alphaCutoff != 0.0) {
+    float alpha = sceneAlpha(indices.x) * (1.0 - s - r) + sceneAlpha(indices.y) * s + sceneAlpha(indices.z) * r;
+    present = stops(materialOf(indices), uv, alpha, kMeanCosine, kEitherWay);
+  }
   if (!present) return;
 #if ACCUMULATE
   SurfacePoint surface = surfaceAt(materialOf(indices), uv);

@@ -1,6 +1,6 @@
 // Where surfaces let light through: holes of alpha masks, and with full materials alphaMode BLEND and thin glass.
-// Arguments of the functions: material is its number, uv the first set of texture coordinates, cosine that between
-// light and normal, above 0.
+// Arguments of the functions: material is its number, uv the first set of texture coordinates, alpha that of the vertex
+// colours, cosine that between light and normal, above 0.
 #ifndef FOVEA_PASSAGE_GLSL
 #define FOVEA_PASSAGE_GLSL
 
@@ -40,28 +40,28 @@ vec3 glassTint(uint material, vec2 uv) {
 
 // The share of light that the surface stops before any of it enters glass: alpha of BLEND, 0 or 1 of MASK, else 1.
 // flags, cutoff: of the material, if they are known already.
-float coverage(uint material, vec2 uv, uint flags, float cutoff) {
+float coverage(uint material, vec2 uv, float alpha, uint flags, float cutoff) {
   if (cutoff == 0.0) return 1.0;
   int first = int(material) * kMaterialTexels;
-  float alpha = texelOf(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a;
-  return (flags & kMaterialBlended) != 0u ? clamp(alpha, 0.0, 1.0) : float(alpha >= cutoff);
+  float all = alpha * texelOf(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a;
+  return (flags & kMaterialBlended) != 0u ? clamp(all, 0.0, 1.0) : float(all >= cutoff);
 }
 
 // The same, with both looked up.
-float coverage(uint material, vec2 uv) {
+float coverage(uint material, vec2 uv, float alpha) {
   int first = int(material) * kMaterialTexels;
   uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
-  return coverage(material, uv, flags, texelOf(sceneMaterials, first + 1).a);
+  return coverage(material, uv, alpha, flags, texelOf(sceneMaterials, first + 1).a);
 }
 
 // Whether a surface stops a ray, as a random decision. chance: uniform in [0, 1), or kEitherWay, with which rays pass
 // if at least half of the light does.
-bool stops(uint material, vec2 uv, float cosine, float chance) {
+bool stops(uint material, vec2 uv, float alpha, float cosine, float chance) {
   int first = int(material) * kMaterialTexels;
   float cutoff = texelOf(sceneMaterials, first + 1).a;
   if (cutoff == 0.0) return true;
   uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
-  float stopped = coverage(material, uv, flags, cutoff);
+  float stopped = coverage(material, uv, alpha, flags, cutoff);
   // Few materials are glass.
   if ((flags & kMaterialTransmits) != 0u)
     stopped *= 1.0 - passage(material, uv, cosine);
@@ -70,10 +70,10 @@ bool stops(uint material, vec2 uv, float cosine, float chance) {
 
 // The share of light that passes the surface, beside what covers it or through the glass, by channels. For full
 // materials alone.
-vec3 transmittance(uint material, vec2 uv, float cosine) {
+vec3 transmittance(uint material, vec2 uv, float alpha, float cosine) {
   int first = int(material) * kMaterialTexels;
   uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
-  float covered = coverage(material, uv, flags, texelOf(sceneMaterials, first + 1).a);
+  float covered = coverage(material, uv, alpha, flags, texelOf(sceneMaterials, first + 1).a);
   vec3 share = vec3(1.0 - covered);
   if ((flags & kMaterialTransmits) != 0u)
     share += covered * passage(material, uv, cosine) * glassTint(material, uv);

@@ -85,7 +85,7 @@ bool isGlass(TracedSurface v) { return (materialFlags(v) & kMaterialTransmits) !
 // Whether a ray passes a surface that it meets, as a random decision. direction: unit; chance: uniform in [0, 1).
 bool passesSurface(TracedSurface v, vec3 direction, float chance) {
   return (materialFlags(v) & (kMaterialBlended | kMaterialTransmits)) != 0u &&
-         !stops(v.material, v.uv, abs(dot(v.normal, direction)), chance);
+         !stops(v.material, v.uv, alphaAt(sceneTriangle(v.triangle), v.weights), abs(dot(v.normal, direction)), chance);
 }
 #endif
 

@@ -33,25 +33,30 @@ struct RayHit {
 // The distance that a ray must start off a surface, m, so as not to hit it again.
 float rayEpsilon() { return kRayEpsilon * max(distance(frame.boundsMin, frame.boundsMax), kLeastDiagonal); }
 
-// Whether a material has no hole at `uv`.
-bool solidAt(uint material, vec2 uv) {
+// Whether a material has no hole at `uv`. alpha: of the vertex colours.
+bool solidAt(uint material, vec2 uv, float alpha) {
   int first = int(material) * kMaterialTexels;
   float cutoff = texelOf(sceneMaterials, first + 1).a;
 #if RAY_PASSAGE
   if ((uint(texelOf(sceneMaterials, first + kColorTexture).w) & kMaterialBlended) != 0u) return true;
 #endif
-  return materialReflectance(material, uv).a >= cutoff;
+  return alpha * materialReflectance(material, uv).a >= cutoff;
 }
 
-// Texture coordinates at a point of a triangle. weights: barycentric, of the second and third vertex.
+// Texture coordinates, and alpha of the vertex colours, at a point of a triangle. weights: barycentric, of the second
+// and third vertex.
 vec2 uvAt(uvec4 triangle, vec2 weights) {
   return sceneUv(triangle.x) * (1.0 - weights.x - weights.y) + sceneUv(triangle.y) * weights.x +
          sceneUv(triangle.z) * weights.y;
 }
+float alphaAt(uvec4 triangle, vec2 weights) {
+  return sceneAlpha(triangle.x) * (1.0 - weights.x - weights.y) + sceneAlpha(triangle.y) * weights.x +
+         sceneAlpha(triangle.z) * weights.y;
+}
 
 // The same at a point of a triangle with holes. vertices: of the triangle; weights: of the second and third one.
 bool solidAt(uint triangle, uvec4 vertices, vec2 weights) {
-  return solidAt(materialOf(sceneTriangle(triangle)), uvAt(vertices, weights));
+  return solidAt(materialOf(sceneTriangle(triangle)), uvAt(vertices, weights), alphaAt(vertices, weights));
 }
 
 // trace() finds the nearest hit, or any if that suffices: on the host by Embree or the project's own tracer, on the

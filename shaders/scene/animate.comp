@@ -5,13 +5,13 @@
 
 layout(local_size_x = 64) in;
 
-// Two texels per vertex: xyz at rest, w: shape; xyz normal.
+// Two texels per vertex: xyz at rest, w: shape; xyz normal, w: alpha of the colour.
 uniform textureBuffer rest;
 // Two texels per shape (a primitive of an object, or its cage): first joint, first weight, number of morph targets,
-// object; first entry in the skin + 1 (0 if it has no joints), first texel of the targets, first vertex, number of
-// vertices (0 if stencils make them).
+// object | sets of joints << 16; first entry in the skin + 1 (0 if it has no joints), first texel of the targets, first
+// vertex, number of vertices (0 if stencils make them).
 uniform utextureBuffer shapes;
-uniform utextureBuffer skinJoints;   // four joints per vertex
+uniform utextureBuffer skinJoints;   // sets of four joints per vertex, one set after the other
 uniform textureBuffer skinWeights;
 uniform textureBuffer targets;       // two texels per vertex and target: displacements of position and normal
 // Objects from `firstPose` (three rows of the transform to the world, then x: visible), joints from `firstJoint`
@@ -45,10 +45,11 @@ void main() {
   uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
   if (i >= count) return;
   vec4 first = texelFetch(rest, int(2u * i));
-  vec3 position = first.xyz, normal = texelFetch(rest, int(2u * i + 1u)).xyz;
+  vec4 second = texelFetch(rest, int(2u * i + 1u));
+  vec3 position = first.xyz, normal = second.xyz;
   uvec4 what = texelFetch(shapes, int(2u * uint(first.w))), where = texelFetch(shapes, int(2u * uint(first.w)) + 1);
   if (where.w == 0u) return;
-  uint object = firstPose + 4u * what.w;
+  uint object = firstPose + 4u * (what.w & 0xffffu), sets = what.w >> 16;
   mat4x3 toWorld = rowsAt(object);
   if (texelFetch(poses, int(object + 3u)).x < 0.5) {
     position = toWorld[3];
@@ -63,11 +64,14 @@ void main() {
       normal += weight * texelFetch(targets, texel + 1).xyz;
     }
     if (where.x != 0u) {
-      uvec4 joints = texelFetch(skinJoints, int(where.x - 1u + vertex));
-      vec4 weights = texelFetch(skinWeights, int(where.x - 1u + vertex));
       toWorld = mat4x3(0.0);
-      for (int k = 0; k < 4; ++k)
-        if (weights[k] != 0.0) toWorld += weights[k] * rowsAt(firstJoint + 3u * (what.x + joints[k]));
+      for (uint set = 0u; set < sets; ++set) {
+        int entry = int(where.x - 1u + set * where.w + vertex);
+        uvec4 joints = texelFetch(skinJoints, entry);
+        vec4 weights = texelFetch(skinWeights, entry);
+        for (int k = 0; k < 4; ++k)
+          if (weights[k] != 0.0) toWorld += weights[k] * rowsAt(firstJoint + 3u * (what.x + joints[k]));
+      }
     }
     position = toWorld * vec4(position, 1.0);
     normal = normalMatrix(toWorld) * normal;
@@ -75,7 +79,7 @@ void main() {
     normal = size > 0.0 && size < 1e38 ? normal / size : vec3(0.0, 1.0, 0.0);  // also covers infinity and NaN
   }
   if (i < vertices) {
-    positions[firstVertex + i] = vec4(position, 1.0);
+    positions[firstVertex + i] = vec4(position, second.w);
     attributes[firstVertex + i].xy = octEncode(normal);
   } else {
     points[i - vertices] = vec4(position, 1.0);

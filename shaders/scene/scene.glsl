@@ -56,21 +56,24 @@ int wrapTexel(int i, int size, uint wrap) {
   return r < size ? r : period - 1 - r;
 }
 
-// A texture at `uv`, as linear light: filtered bilinearly at level 0, after texels have been decoded. texel: the first
-// of the three texels that describe the texture (TextureRecord). White if there is none.
+// A texture at `uv`, as linear light: at level 0, the nearest texel or four, decoded and then interpolated. texel: the
+// first of the three texels that describe the texture (TextureRecord). White if there is none.
 vec4 sampleSceneTexture(int texel, vec2 uv) {
   vec4 place = texelOf(sceneMaterials, texel);
   if (place.x < 0.0) return vec4(1.0);
   vec4 extent = texelOf(sceneMaterials, texel + 1);
   vec4 axes = texelOf(sceneMaterials, texel + 2);
-  vec2 p = (vec2(axes) * uv.x + vec2(axes.z, axes.w) * uv.y + vec2(extent.z, extent.w)) * vec2(extent) - 0.5;
+  vec2 p = (vec2(axes) * uv.x + vec2(axes.z, axes.w) * uv.y + vec2(extent.z, extent.w)) * vec2(extent);
+  uint flags = uint(place.w), wrapU = flags & 3u, wrapV = flags >> 2 & 3u;
+  bool nearest = (flags & kTextureNearest) != 0u;
+  if (!nearest) p -= 0.5;
   p = mix(clamp(p, vec2(-1e9), vec2(1e9)), vec2(0.0), isnan(p));
   vec2 base = floor(p);
   vec2 f = p - base;
   ivec2 size = ivec2(extent), i = ivec2(base), corner = ivec2(place.y, place.z);
-  uint flags = uint(place.w), wrapU = flags & 3u, wrapV = flags >> 2 & 3u;
   bool linear = (flags & kTextureLinear) != 0u;
   ivec2 a = corner + ivec2(wrapTexel(i.x, size.x, wrapU), wrapTexel(i.y, size.y, wrapV));
+  if (nearest) return sceneTexel(ivec3(a, int(place.x)), linear);
   ivec2 b = corner + ivec2(wrapTexel(i.x + 1, size.x, wrapU), wrapTexel(i.y + 1, size.y, wrapV));
   int page = int(place.x);
   vec4 top = mix(sceneTexel(ivec3(a, page), linear), sceneTexel(ivec3(b.x, a.y, page), linear), f.x);

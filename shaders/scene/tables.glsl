@@ -13,7 +13,7 @@ layout(set = 1, binding = 1) uniform ViewUniform { ViewBlock view; };           
 layout(set = 1, binding = 2) uniform LightUniform { LightRecord lights[kMaxLights]; };  // frame.lightCount of them
 
 SCENE_TEXELS(3, uvec4, sceneTriangles);     // xyz: vertices, w: material | object << 16
-SCENE_TEXELS(4, vec4, scenePositions);      // xyz: world space, m
+SCENE_TEXELS(4, vec4, scenePositions);      // xyz: world space, m, w: alpha of the vertex colour
 SCENE_TEXELS(5, vec4, sceneAttributes);     // xy: octahedral normal, zw: uv
 SCENE_TEXELS(6, vec4, sceneMaterials);      // MaterialRecord
 layout(set = 1, binding = 7) uniform sampler2DArray sceneTextures;      // pages of 8-bit texels as the files have them
@@ -24,7 +24,8 @@ layout(set = 1, binding = 10) uniform sampler2D sceneEnvironment;       // equir
 // ---- Geometry ----------------------------------------------------------------------------------------------------
 
 // A triangle (xyz: vertices, w: material | object << 16), and of a vertex the position in this frame and in the
-// previous one (world space, m), the shading normal (world space, unit) and the texture coordinates.
+// previous one (world space, m), the shading normal (world space, unit), the texture coordinates and the alpha of the
+// colour, 1 if it has none.
 uvec4 sceneTriangle(uint triangle) { return texelOf(sceneTriangles, int(triangle)); }
 vec3 scenePosition(uint vertex) { return texelOf(scenePositions, int(vertex)).xyz; }
 vec3 scenePreviousPosition(uint vertex) {
@@ -33,6 +34,7 @@ vec3 scenePreviousPosition(uint vertex) {
 }
 vec3 sceneNormal(uint vertex) { return octDecode(texelOf(sceneAttributes, int(vertex)).xy); }
 vec2 sceneUv(uint vertex) { return texelOf(sceneAttributes, int(vertex)).zw; }
+float sceneAlpha(uint vertex) { return texelOf(scenePositions, int(vertex)).w; }
 
 // ---- Textures ----------------------------------------------------------------------------------------------------
 

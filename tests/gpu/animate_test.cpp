@@ -56,10 +56,10 @@ void compare(const Scene& scene) {
     for (size_t i = 0; i < now.positions.size(); ++i) {
       ASSERT_LT(glm::distance(glm::vec3(v.positions[i]), now.positions[i]), 1e-5f * size)
           << index << " " << i;
-      ASSERT_EQ(v.positions[i].w, 1.0f);
       ASSERT_LT(glm::distance(octDecode(glm::vec2(v.attributes[i])), now.normals[i]), 2e-5f)
           << index << " " << i;
       ASSERT_EQ(glm::vec2(v.attributes[i].z, v.attributes[i].w), now.uvs[i]);
+      ASSERT_EQ(v.positions[i].w, now.colors.empty() ? 1.0f : now.colors[i].a);
     }
     for (size_t i = now.staticVertices(); i < now.positions.size(); ++i)
       ASSERT_LT(glm::distance(glm::vec3(v.previous[i - now.staticVertices()]), before.positions[i]),
@@ -92,8 +92,13 @@ Scene handmade() {
       bulge.positions.emplace_back(0, 0, std::sin(float(x + y)));
       bulge.normals.emplace_back(0.1f * float(x), 0.1f * float(y), 0);
       p.joints.emplace_back(uint16_t(y / 2), uint16_t(y < 2 ? 1 : 0), 0, 0);
-      p.weights.emplace_back(0.75f, 0.25f, 0, 0);
+      p.weights.emplace_back(0.5f, 0.25f, 0, 0);
+      p.colors.emplace_back(1, 1, 1, 0.05f * float(p.positions.size()));
     }
+  for (int i = 0; i < 20; ++i) {  // a second set of joints
+    p.joints.emplace_back(uint16_t(i % 3), uint16_t(2), 0, 0);
+    p.weights.emplace_back(0.125f, 0.125f, 0, 0);
+  }
   for (uint32_t y = 0; y < 4; ++y)
     for (uint32_t x = 0; x < 3; ++x) {
       const uint32_t v = 4 * y + x;

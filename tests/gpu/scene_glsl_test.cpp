@@ -83,7 +83,7 @@ TEST(SceneGlsl, MaterialsAndTextures) {
     SurfacePoint s = surfaceAt(m, q.yz);
     Material material = loadMaterial(m);
     r[0] = vec4(s.reflectance, materialReflectance(m, q.yz).a);
-    r[1] = vec4(s.emission, stops(m, q.yz, 1.0, kEitherWay) ? 1.0 : 0.0);
+    r[1] = vec4(s.emission, stops(m, q.yz, 1.0, 1.0, kEitherWay) ? 1.0 : 0.0);
     r[2] = vec4(material.doubleSided ? 1.0 : 0.0, material.alphaCutoff, material.alpha, material.baseColor.g);
   )");
   for (size_t i = 0; i + 1 < queries.size(); ++i) {
@@ -107,6 +107,45 @@ TEST(SceneGlsl, MaterialsAndTextures) {
     EXPECT_FLOAT_EQ(results[3 * i + 2].w, m.baseColor.g * (1 - m.metallic));
   }
   for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::isfinite(results[results.size() - 3][c]));
+}
+
+// Away from the edges of texels, where rounding decides.
+TEST(SceneGlsl, NearestTexelsAndAlphaOfVertices) {
+  Scene scene = texturedScene();
+  for (Material& m : scene.materials) {
+    m.baseColorTexture.nearest = true;
+    m.baseColorTexture.transform = {1, 0, 0, 1, 0, 0};
+    m.masked = true;
+  }
+  GpuScene gpu(testDevice(), scene, {}, 2);
+  std::vector<glm::vec4> queries;
+  for (uint32_t m = 0; m + 1 < scene.materials.size(); ++m)
+    for (uint32_t i = 0; i < 32; ++i) {
+      const uint32_t k = m * 32 + i;
+      const Texture& t = scene.textures[scene.materials[m].baseColorTexture.texture];
+      const glm::vec2 texel =
+          glm::floor(glm::vec2(t.width, t.height) * (4 * glm::vec2(random(40, k), random(41, k)) - 2.0f));
+      const glm::vec2 inside(0.1f + 0.8f * random(42, k), 0.1f + 0.8f * random(43, k));
+      queries.emplace_back(float(m), (texel + inside) / glm::vec2(t.width, t.height), random(44, k));
+    }
+  const auto results = evaluate(gpu, Frame{}, queries, R"(
+    uint m = uint(q.x);
+    r[0] = materialReflectance(m, q.yz);
+    r[1] = vec4(stops(m, q.yz, q.w, 1.0, kEitherWay) ? 1.0 : 0.0);
+  )");
+  uint32_t solid = 0;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Material& m = scene.materials[size_t(queries[i].x)];
+    const glm::vec4 color = reflectance(scene, m, {queries[i].y, queries[i].z});
+    for (int c = 0; c < 4; ++c) ASSERT_NEAR(results[3 * i][c], color[c], 1e-5) << i;
+    const float alpha = color.a * queries[i].w;
+    if (std::abs(alpha - m.alphaCutoff) > 1e-5f) {
+      ASSERT_EQ(results[3 * i + 1].x, float(alpha >= m.alphaCutoff)) << i;
+    }
+    solid += alpha >= m.alphaCutoff;
+  }
+  EXPECT_GT(solid, queries.size() / 20);
+  EXPECT_LT(solid, queries.size() / 2);
 }
 
 // Even where the device's own are as far off as Vulkan allows.
@@ -354,7 +393,8 @@ TEST(SceneGlsl, LightPassesBlendAndGlassAsOnTheCpu) {
     queries.emplace_back(float(k / 32), random(35, k), random(36, k), random(37, k));
   const char* body = R"(
     uint m = uint(q.x);
-    r[0] = vec4(passage(m, q.yz, q.w), stops(m, q.yz, q.w, 0.3) ? 1.0 : 0.0, stops(m, q.yz, q.w, 0.7) ? 1.0 : 0.0, 0.0);
+    r[0] = vec4(passage(m, q.yz, q.w), stops(m, q.yz, 1.0, q.w, 0.3) ? 1.0 : 0.0,
+                stops(m, q.yz, 1.0, q.w, 0.7) ? 1.0 : 0.0, 0.0);
   )";
   const auto results = evaluate(gpu, Frame{}, queries, body),
              solid = evaluate(diffuse, Frame{}, queries, body);

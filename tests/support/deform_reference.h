@@ -64,10 +64,12 @@ class DeformReference {
         }
         glm::dmat4 m = n.skin == scene::kNoIndex || p.joints.empty() ? world(node) : glm::dmat4(0.0);
         if (n.skin != scene::kNoIndex && !p.joints.empty())
-          for (int k = 0; k < 4; ++k) {
+          for (size_t k = 0; k < 4 * p.joints.size() / p.positions.size(); ++k) {
             const scene::Skin& skin = scene_.skins[n.skin];
-            const uint32_t joint = p.joints[i][k];
-            m += double(p.weights[i][k]) * (world(skin.joints[joint]) * glm::dmat4(skin.inverseBind[joint]));
+            const size_t entry = i + k / 4 * p.positions.size();
+            const uint32_t joint = p.joints[entry][int(k % 4)];
+            m += double(p.weights[entry][int(k % 4)]) *
+                 (world(skin.joints[joint]) * glm::dmat4(skin.inverseBind[joint]));
           }
         const glm::dvec3 turned = glm::transpose(glm::inverse(glm::dmat3(m))) * normal;
         list.push_back({glm::dvec3(m * glm::dvec4(position, 1.0)), glm::normalize(turned)});

@@ -228,6 +228,37 @@ TEST(RayScene, KeyFollowsHoles) {
   EXPECT_NE(flatten(s).stillKey, wider);
 }
 
+// Alpha of the vertex colours falls from 1 to 0 along a side of a masked triangle.
+TEST(RayScene, AlphaOfVertexColoursCutsHoles) {
+  Scene s;
+  test::addMaterial(s, glm::vec3(0.5f));
+  s.materials[0].masked = true;
+  Primitive p;
+  p.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  p.normals.assign(3, {0, 0, 1});
+  p.uvs.assign(3, {0, 0});
+  p.indices = {0, 1, 2};
+  p.colors = {{1, 1, 1, 1}, {1, 1, 1, 0}, {1, 1, 1, 1}};
+  s.meshes.push_back({"fading", {p}});
+  s.nodes.emplace_back().mesh = 0;
+  const auto solid = [&](float x) {
+    const Geometry g = flatten(s);
+    return RayScene(s, g).occluded({{x, 0.1f, 1}, {0, 0, -1}});
+  };
+  EXPECT_TRUE(solid(0.49f));
+  EXPECT_FALSE(solid(0.51f));
+  const uint64_t key = flatten(s).stillKey;
+  s.materials[0].baseColor.a = 0.8f;
+  EXPECT_TRUE(solid(0.37f));
+  EXPECT_FALSE(solid(0.38f));
+  s.materials[0].masked = false;
+  EXPECT_TRUE(solid(0.8f));
+  s.materials[0].masked = true;
+  s.materials[0].baseColor.a = 1;
+  s.meshes[0].primitives[0].colors[1].a = 0.25f;
+  EXPECT_NE(flatten(s).stillKey, key);
+}
+
 TEST(RayScene, EmptySceneIsHitByNothing) {
   const Scene s;
   const Geometry g;

@@ -1,6 +1,7 @@
 // Compares sampleTexture with values worked out by hand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -60,6 +61,19 @@ TEST(TextureSampling, BilinearInBothDirections) {
   // A quarter of the way from texel (1, 0) to (2, 0), three quarters from row 0 to row 1.
   const glm::vec4 c = sampleTexture(scene(false), use(), {(1.5f + 0.25f) / 4, (0.5f + 0.75f) / 2});
   EXPECT_NEAR(c.r, (10 + 60 * 1.25 + 20 * 0.75) / 255.0, 1e-6);
+}
+
+TEST(TextureSampling, NearestTexelsHaveHardEdges) {
+  const Scene s = scene(false);
+  TextureUse t = use(Wrap::Clamp, Wrap::Repeat);
+  t.nearest = true;
+  for (int i = -4; i < 44; ++i) {
+    const float u = (float(i) + 0.5f) / 40;
+    EXPECT_FLOAT_EQ(sampleTexture(s, t, {u, 0.4f}).r * 255, float(10 + 60 * std::clamp(i / 10, 0, 3))) << u;
+    EXPECT_FLOAT_EQ(sampleTexture(s, t, {u, 0.6f}).r * 255, float(30 + 60 * std::clamp(i / 10, 0, 3))) << u;
+  }
+  EXPECT_FLOAT_EQ(sampleTexture(s, t, {0.1f, -0.1f}).r * 255, 30);  // repeats
+  EXPECT_FLOAT_EQ(sampleTexture(s, t, {0.26f, 0.1f}).a * 255, 50);
 }
 
 TEST(TextureSampling, WrapModes) {

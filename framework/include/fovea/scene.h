@@ -35,6 +35,7 @@ struct TextureUse {
   Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
   glm::mat3x2 transform{1, 0, 0, 1, 0, 0};  // columns: u axis, v axis, offset
   uint32_t set = 0;                         // of texture coordinates: 0 for Primitive::uvs, 1 for secondUvs
+  bool nearest = false;                     // shows the nearest texel; otherwise four are interpolated
   explicit operator bool() const { return texture != kNoIndex; }
 };
 
@@ -99,11 +100,14 @@ struct Primitive {
   std::vector<uint32_t> lightIndices{};
   // For meshes that deform: morph targets are applied first; then the joints of Node::skin move the result.
   std::vector<MorphTarget> targets{};  // the same number in every primitive of a mesh
-  std::vector<glm::u16vec4> joints{};  // four per vertex, indices into Skin::joints; empty if not skinned
-  std::vector<glm::vec4> weights{};    // weights of the four joints, with sum 1; as many as `joints`
+  // Joints of vertices, indices into Skin::joints: sets of four for each vertex, one set after the other, so that
+  // vertex i has entries i, i + n, ... where n is the number of vertices. Empty if not skinned.
+  std::vector<glm::u16vec4> joints{};
+  std::vector<glm::vec4> weights{};  // of these joints, as many as `joints`; those of a vertex have sum 1
   // What only few models have; each of these lists is empty or has one entry per vertex.
   std::vector<glm::vec2> secondUvs{};  // of textures with set 1
-  std::vector<glm::vec4> colors{};     // linear, factors on the base colour
+  std::vector<glm::vec4>
+      colors{};  // linear, factors on the base colour and, also of diffuse materials, on alpha
   // xyz: unit, the direction of u in the surface; w: 1 or -1, and the bitangent is w * cross(normal, tangent). If empty
   // and the material has a normal map, they follow from the texture coordinates.
   std::vector<glm::vec4> tangents{};

@@ -38,16 +38,18 @@ struct Shapes {
   uint32_t vertices() const { return uint32_t(rest.size() / 2); }
 
   template <class Shape>  // a Primitive or a SubdivisionCage
-  void add(const Shape& shape, const std::vector<glm::vec3>* normals, const Object& object, uint32_t index) {
+  void add(const Shape& shape, const std::vector<glm::vec3>* normals, const std::vector<glm::vec4>& colors,
+           const Object& object, uint32_t index) {
     const uint32_t number = uint32_t(shapes.size() / 2), count = uint32_t(shape.positions.size());
     const bool bent = object.jointCount > 0 && !shape.joints.empty();
     const uint32_t morphs = std::min(uint32_t(shape.targets.size()), object.weightCount);
-    shapes.emplace_back(object.firstJoint, object.firstWeight, morphs, index);
+    const uint32_t sets = bent ? uint32_t(shape.joints.size()) / count : 0;
+    shapes.emplace_back(object.firstJoint, object.firstWeight, morphs, index | sets << 16);
     shapes.emplace_back(bent ? uint32_t(skinJoints.size()) + 1 : 0, uint32_t(targets.size()), vertices(),
                         count);
     for (uint32_t i = 0; i < count; ++i) {
       rest.emplace_back(shape.positions[i], float(number));
-      rest.emplace_back(normals ? (*normals)[i] : glm::vec3(0, 1, 0), 0);
+      rest.emplace_back(normals ? (*normals)[i] : glm::vec3(0, 1, 0), colors.empty() ? 1.0f : colors[i].a);
     }
     if (bent) {
       skinJoints.insert(skinJoints.end(), shape.joints.begin(), shape.joints.end());
@@ -136,7 +138,7 @@ struct Animator::Impl {
         continue;
       }
       for (const Primitive& p : scene.meshes[scene.nodes[object.node].mesh].primitives)
-        list.add(p, &p.normals, object, i);
+        list.add(p, &p.normals, p.colors, object, i);
     }
     if (list.vertices() != vertices)
       throw Error(ExitCode::Internal, "the moving vertices of the scene are not those of its geometry");
@@ -152,7 +154,7 @@ struct Animator::Impl {
       s.joint = object.firstJoint;
       s.bent = object.jointCount > 0;
       caged.push_back(s);
-      list.add(cage, nullptr, object, i);
+      list.add(cage, nullptr, {}, object, i);
     }
     sources = list.vertices();
     upload(std::move(list));

@@ -63,7 +63,8 @@ std::vector<Triangle> triangleList(const Geometry& g) {
 std::vector<glm::vec4> positionList(const Geometry& g) {
   std::vector<glm::vec4> list;
   list.reserve(g.positions.size());
-  for (const glm::vec3& p : g.positions) list.emplace_back(p, 1);
+  for (size_t i = 0; i < g.positions.size(); ++i)
+    list.emplace_back(g.positions[i], g.colors.empty() ? 1.0f : g.colors[i].a);
   return list;
 }
 

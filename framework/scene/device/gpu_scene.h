@@ -56,7 +56,7 @@ class GpuScene : public FrameDescriptors {
   // uvec4 per triangle: 3 vertices, then material | object << 16; Geometry::lightTriangles follow those of the
   // picture.
   gpu::Buffer& triangles() const;
-  gpu::Buffer& positions() const;   // vec4: world space, m; w 1
+  gpu::Buffer& positions() const;   // vec4: world space, m; w: alpha of the vertex colour
   gpu::Buffer& attributes() const;  // vec4: octahedral normal, uv
   gpu::Buffer& previous() const;    // vec4: the previous frame's positions of the vertices that move
   gpu::Buffer& materials() const;   // MaterialRecord each, then what full materials need

@@ -132,9 +132,12 @@ class GltfWriter {
     return imageOf_[{texture, color}] = root_["images"].size() - 1;
   }
 
-  size_t sampler(Wrap u, Wrap v) {
-    const Json wanted = {
-        {"magFilter", 9729}, {"minFilter", 9729}, {"wrapS", wrapMode(u)}, {"wrapT", wrapMode(v)}};
+  size_t sampler(const TextureUse& use) {
+    const int filter = use.nearest ? 9728 : 9729;
+    const Json wanted = {{"magFilter", filter},
+                         {"minFilter", filter},
+                         {"wrapS", wrapMode(use.wrapU)},
+                         {"wrapT", wrapMode(use.wrapV)}};
     return indexOf("samplers", wanted);
   }
 
@@ -150,8 +153,7 @@ class GltfWriter {
   // KHR_texture_transform, the inverse of what the loader builds: columns (c sx, -s sx), (s sy, c sy), offset.
   Json textureUse(const TextureUse& use, const std::string& material, bool color) {
     const size_t source = image(use.texture, color);
-    Json out = {
-        {"index", indexOf("textures", {{"source", source}, {"sampler", sampler(use.wrapU, use.wrapV)}})}};
+    Json out = {{"index", indexOf("textures", {{"source", source}, {"sampler", sampler(use)}})}};
     if (use.set != 0) out["texCoord"] = use.set;
     const glm::mat3x2& m = use.transform;
     if (m == glm::mat3x2{1, 0, 0, 1, 0, 0}) return out;
@@ -252,9 +254,15 @@ class GltfWriter {
       attributes["TEXCOORD_1"] = accessor(p.secondUvs, {"VEC2", kFloat, 2, kVertexData});
     if (!p.colors.empty()) attributes["COLOR_0"] = accessor(p.colors, {"VEC4", kFloat, 4, kVertexData});
     if (!p.tangents.empty()) attributes["TANGENT"] = accessor(p.tangents, {"VEC4", kFloat, 4, kVertexData});
-    if (!p.joints.empty()) {
-      attributes["JOINTS_0"] = accessor(p.joints, {"VEC4", kUnsignedShort, 4, kVertexData});
-      attributes["WEIGHTS_0"] = accessor(p.weights, {"VEC4", kFloat, 4, kVertexData});
+    const size_t vertices = p.positions.size();
+    for (size_t set = 0; vertices > 0 && set < p.joints.size() / vertices; ++set) {
+      const auto part = [&](const auto& list) {
+        const auto begin = list.begin() + std::ptrdiff_t(set * vertices);
+        return std::decay_t<decltype(list)>(begin, begin + std::ptrdiff_t(vertices));
+      };
+      const std::string number = std::to_string(set);
+      attributes["JOINTS_" + number] = accessor(part(p.joints), {"VEC4", kUnsignedShort, 4, kVertexData});
+      attributes["WEIGHTS_" + number] = accessor(part(p.weights), {"VEC4", kFloat, 4, kVertexData});
     }
     Json out = {{"attributes", attributes},
                 {"indices", accessor(p.indices, {"SCALAR", kUnsignedInt, 1, kIndexData})},

@@ -59,6 +59,8 @@ std::string bitmap(const char* name, const std::string& file, bool raw, const ch
       name, file, raw, filter, wrap, transform);
 }
 
+const char* filterOf(const TextureUse& use) { return use.nearest ? "nearest" : "bilinear"; }
+
 // The coordinates that the transform of `use` maps to `uv`.
 glm::vec2 straightUv(const glm::vec2& uv, const TextureUse& use) {
   const glm::mat2 axes(use.transform[0], use.transform[1]);
@@ -111,7 +113,7 @@ std::string MitsubaMaterials::colour(const char* name, const TextureUse& use, co
             factor[int(i % 3)] * (source.srgb ? image::srgbDecode(pixels.data[i]) : pixels.data[i]);
     image::write(folder_ / file, {{"", std::move(pixels)}});
   }
-  return bitmap(name, file, !plain, "bilinear", from.wrap, toUv(use, from.scale));
+  return bitmap(name, file, !plain, filterOf(use), from.wrap, toUv(use, from.scale));
 }
 
 // One channel of a texture of data times a factor, as an image of floats.
@@ -129,7 +131,7 @@ std::string MitsubaMaterials::channel(const char* name, const TextureUse& use, u
       pixels.data[i] = factor * float(from.texture.rgba[4 * i + channel]) / 255.0f;
     image::write(folder_ / file, {{"", std::move(pixels)}});
   }
-  return bitmap(name, file, true, "bilinear", from.wrap, toUv(use, from.scale));
+  return bitmap(name, file, true, filterOf(use), from.wrap, toUv(use, from.scale));
 }
 
 // Whether bilinear alpha reaches the cutoff, or with alphaMode BLEND that alpha itself, at the middles of at least
@@ -252,7 +254,7 @@ std::string MitsubaMaterials::withNormalMap(const Material& m, const std::string
   const std::string file = textureFile(use, "_normals.exr");
   image::write(folder_ / file, {{"", std::move(pixels)}});
   return "<bsdf type=\"normalmap\">" +
-         bitmap("normalmap", file, true, "bilinear", from.wrap, toUv(use, from.scale)) + inner + "</bsdf>";
+         bitmap("normalmap", file, true, filterOf(use), from.wrap, toUv(use, from.scale)) + inner + "</bsdf>";
 }
 
 }  // namespace fovea::scene

@@ -51,8 +51,8 @@ void place(const Shape& shape, const ObjectPose& pose, glm::vec3* positions, glm
   const glm::mat3 turn = normalMatrix(pose.toWorld);
   for (size_t i = 0; i < count; ++i) {
     glm::mat4 m(0.0f);
-    if (bent)
-      for (int k = 0; k < 4; ++k) m += shape.weights[i][k] * pose.joints[shape.joints[i][k]];
+    for (size_t entry = i; bent && entry < shape.joints.size(); entry += count)  // of each set
+      for (int k = 0; k < 4; ++k) m += shape.weights[entry][k] * pose.joints[shape.joints[entry][k]];
     const glm::mat4& toWorld = bent ? m : pose.toWorld;
     positions[i] = glm::vec3(toWorld * glm::vec4(positions[i], 1.0f));
     if (normals) normals[i] = unitNormal((bent ? normalMatrix(m) : turn) * normals[i]);

@@ -68,10 +68,11 @@ double areaOf(const Geometry& geometry, uint32_t first, uint32_t end) {
 // The parts that stay the same while dynamic objects move: the tracer of all static triangles, and all masks.
 struct RayScene::Still {
   std::unique_ptr<RayTracer> tracer;
-  // Triangles with holes only: three uvs each, found through the triangle's index.
+  // Triangles with holes only: the texture coordinates of their vertices, and the alpha of the vertex colours, found
+  // through the triangle's index.
   std::vector<uint32_t>
       maskOfTriangle;  // index into masks, kNoIndex for opaque; empty when nothing has holes
-  std::vector<std::array<glm::vec2, 3>> uvs;
+  std::vector<std::array<glm::vec3, 3>> corners;
   std::vector<Mask> masks;
   bool meetsTransparency = false;
   double area = 0;
@@ -93,10 +94,10 @@ struct RayScene::Still {
     const uint32_t m = maskOfTriangle[triangle];
     if (m == kNoIndex) return true;
     const Scene& s = masks[m].scene;
-    const auto& t = uvs[triangle];
-    const glm::vec2 uv = t[0] * (1.0f - u - v) + t[1] * u + t[2] * v;
+    const auto& t = corners[triangle];
+    const glm::vec3 at = t[0] * (1.0f - u - v) + t[1] * u + t[2] * v;
     const Material& material = s.materials[0];
-    return reflectance(s, material, uv).a >= material.alphaCutoff;
+    return at.z * reflectance(s, material, glm::vec2(at)).a >= material.alphaCutoff;
   }
 
   void addMasks(const Scene& from, const Geometry& geometry, Passing passing) {
@@ -108,13 +109,14 @@ struct RayScene::Still {
     }
     if (masks.empty()) return;
     maskOfTriangle.assign(geometry.triangles.size(), kNoIndex);
-    uvs.resize(geometry.triangles.size());
+    corners.resize(geometry.triangles.size());
     for (size_t t = 0; t < geometry.triangles.size(); ++t) {
       const Triangle& triangle = geometry.triangles[t];
       if (triangle.material() >= maskOfMaterial.size()) continue;
       maskOfTriangle[t] = maskOfMaterial[triangle.material()];
       for (int k = 0; k < 3; ++k)
-        uvs[t][size_t(k)] = geometry.uvs.empty() ? glm::vec2(0) : geometry.uvs[triangle.v[k]];
+        corners[t][size_t(k)] = {geometry.uvs.empty() ? glm::vec2(0) : geometry.uvs[triangle.v[k]],
+                                 geometry.colors.empty() ? 1.0f : geometry.colors[triangle.v[k]].a};
     }
   }
 };
@@ -193,6 +195,7 @@ uint64_t stillKey(const Scene& scene, const Geometry& geometry) {
   hash.add(geometry.positions.data(), geometry.staticVertices());
   hash.add(geometry.triangles);
   hash.add(geometry.uvs);
+  for (const glm::vec4& color : geometry.colors) hash.add(color.a);
   hash.add(&geometry.staticTriangles, 1);
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& m = scene.materials[i];
@@ -201,8 +204,8 @@ uint64_t stillKey(const Scene& scene, const Geometry& geometry) {
     hash.add(std::array<float, 9>{float(i), m.baseColor.a, m.alphaCutoff, use.transform[0].x,
                                   use.transform[0].y, use.transform[1].x, use.transform[1].y,
                                   use.transform[2].x, use.transform[2].y});
-    hash.add(
-        std::array<uint32_t, 4>{uint32_t(m.blended), use.texture, uint32_t(use.wrapU), uint32_t(use.wrapV)});
+    hash.add(std::array<uint32_t, 5>{uint32_t(m.blended), use.texture, uint32_t(use.wrapU),
+                                     uint32_t(use.wrapV), uint32_t(use.nearest)});
     if (use && use.texture < scene.textures.size()) hash.add(scene.textures[use.texture].rgba);
   }
   return std::max<uint64_t>(hash.value(), 1);

@@ -15,7 +15,7 @@ TextureRecord textureRecord(const Scene& scene, const TextureUse& use, const Tex
   if (!place) return {};
   const Texture& t = scene.textures[use.texture];
   const uint32_t flags = wrapCode(use.wrapU) | wrapCode(use.wrapV) << 2 | (t.srgb ? 0 : kTextureLinear) |
-                         (use.set == 1 ? kTextureSecondSet : 0);
+                         (use.set == 1 ? kTextureSecondSet : 0) | (use.nearest ? kTextureNearest : 0);
   const glm::mat3x2& m = use.transform;
   return {
       float(place->z), float(place->x), float(place->y), float(flags), {t.width, t.height}, m[2], m[0], m[1]};
