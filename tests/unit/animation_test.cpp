@@ -322,7 +322,7 @@ TEST(AnimationErrors, SayWhatIsWrong) {
   const auto broken = [](const std::string& from, const std::string& to) {
     std::string text = animatedTriangle().json();
     replace(text, from, to);
-    return test::errorOfText(text);
+    return test::warningsOfText(text);
   };
   EXPECT_THAT(broken(R"("componentType":5126,"count":2,"type":"SCALAR")",
                      R"("componentType":5126,"count":0,"type":"SCALAR")"),
@@ -344,11 +344,31 @@ TEST(AnimationErrors, SayWhatIsWrong) {
   EXPECT_THAT(broken(R"("sampler":0)", R"("sampler":3)"), HasSubstr("sampler"));
   test::TriangleDocument d = animatedTriangle();
   std::memset(d.bytes.data() + 48, 0, 4);  // both keys at 0 s
-  EXPECT_THAT(test::errorOfText(d.json()), HasSubstr("not after that of the key before it"));
+  EXPECT_THAT(test::warningsOfText(d.json()),
+              AllOf(HasSubstr("not after that of the key before it"), HasSubstr("animations[0] `hop`"),
+                    HasSubstr("the animation is left out")));
+  const float early = -1;
+  std::memcpy(d.bytes.data() + 44, &early, 4);
+  EXPECT_THAT(test::warningsOfText(d.json()), HasSubstr("is negative or not finite"));
+  // The next one plays instead, unless the scene file says otherwise.
+  replace(d.extra, "}]}]", R"(}]},{"name":"leap","samplers":[{"input":4,"output":3}],
+      "channels":[{"sampler":0,"target":{"node":0,"path":"scale"}}]}])");
+  replace(d.accessors, "}]",
+          R"(},{"bufferView":0,"byteOffset":8,"componentType":5126,"count":2,"type":"SCALAR"}])");
+  const Scene next = test::loadText(folder, d.json(), warnings);
+  ASSERT_EQ(next.animations.size(), 2u);
+  EXPECT_TRUE(next.animations[0].channels.empty());
+  EXPECT_FALSE(next.animations[0].plays);
+  EXPECT_TRUE(next.animations[1].plays);
+  for (const char* choice : {"false", "0", "\"hop\""}) {
+    const auto file = folder.write("s.json", std::string(R"({"models":[{"file":"model.gltf","animation":)") +
+                                                 choice + R"(}],"camera":{"eye":[0,0,5],"target":[0,0,0]}})");
+    EXPECT_EQ(flatten(load(file.string(), warnings)).triangles.size(), 1u) << choice;
+  }
   d = animatedTriangle();
   const float nan = std::nanf("");
   std::memcpy(d.bytes.data() + 52, &nan, 4);
-  EXPECT_THAT(test::errorOfText(d.json()), HasSubstr("not finite"));
+  EXPECT_THAT(test::warningsOfText(d.json()), HasSubstr("not finite"));
 }
 
 TEST(AnimationErrors, MorphTargetsThatDoNotFit) {
@@ -359,23 +379,23 @@ TEST(AnimationErrors, MorphTargetsThatDoNotFit) {
   EXPECT_EQ(test::loadText(folder, d.json(), warnings).meshes[0].primitives[0].targets.size(), 1u);
   std::string text = d.json();
   replace(text, R"("primitives":)", R"("weights":[1,0],"primitives":)");
-  EXPECT_THAT(test::errorOfText(text), HasSubstr("2 weights for 1 morph targets"));
+  EXPECT_THAT(test::warningsOfText(text), HasSubstr("2 weights for 1 morph targets"));
   text = d.json();
   replace(text, R"([{"mesh":0}])", R"([{"mesh":0,"weights":[]}, {"mesh":0,"weights":[1,2,3]}])");
   replace(text, R"("nodes":[0])", R"("nodes":[0,1])");
-  EXPECT_THAT(test::errorOfText(text), AllOf(HasSubstr("nodes[1]"), HasSubstr("3 weights for 1")));
+  EXPECT_THAT(test::warningsOfText(text), AllOf(HasSubstr("nodes[1]"), HasSubstr("3 weights for 1")));
   d.accessors =
       R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"},{"bufferView":0,"componentType":5126,"count":2,"type":"VEC3"}])";
   d.primitive = R"({"attributes":{"POSITION":0},"indices":1,"targets":[{"POSITION":2}]})";
-  EXPECT_THAT(test::errorOfText(d.json()), AllOf(HasSubstr("targets[0]"), HasSubstr("has 2 elements")));
+  EXPECT_THAT(test::warningsOfText(d.json()), AllOf(HasSubstr("targets[0]"), HasSubstr("has 2 elements")));
 }
 
 TEST(AnimationErrors, ASkinNeedsJoints) {
   test::TriangleDocument d;
   d.extra = R"(,"skins":[{"joints":[]}])";
-  EXPECT_THAT(test::errorOfText(d.json()), AllOf(HasSubstr("skins[0]"), HasSubstr("no `joints`")));
+  EXPECT_THAT(test::warningsOfText(d.json()), AllOf(HasSubstr("skins[0]"), HasSubstr("no `joints`")));
   d.extra = R"(,"skins":[{"joints":[4]}])";
-  EXPECT_THAT(test::errorOfText(d.json()), AllOf(HasSubstr("skins[0].joints[0]"), HasSubstr("index 4")));
+  EXPECT_THAT(test::warningsOfText(d.json()), AllOf(HasSubstr("skins[0].joints[0]"), HasSubstr("index 4")));
 }
 
 // ---- Scene files ------------------------------------------------------------------------------------------

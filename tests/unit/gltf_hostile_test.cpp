@@ -16,6 +16,7 @@ using test::loadsChanged;
 using test::loadText;
 using test::TemporaryFolder;
 using test::TriangleDocument;
+using test::warningsOfText;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -45,8 +46,9 @@ TEST_P(GltfUri, IsRefusedForImagesAndBuffers) {
   image.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0})";
   image.extra = R"(,"images":[{"uri":")" + uri + R"("}],"textures":[{"source":0}],
       "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
-  EXPECT_THAT(errorOfText(image.json()),
-              AllOf(HasSubstr("model.gltf:1:"), HasSubstr("images[0].uri"), HasSubstr(GetParam().message)));
+  EXPECT_THAT(warningsOfText(image.json()),
+              AllOf(HasSubstr("model.gltf:1:"), HasSubstr("images[0].uri"), HasSubstr(GetParam().message),
+                    HasSubstr("the image is left out")));
   TriangleDocument buffer;
   buffer.bufferUri = uri.empty() ? std::string(" ") : uri;
   if (!uri.empty()) {
@@ -131,6 +133,44 @@ TEST(GltfHostile, DataUriWithoutData) {
     EXPECT_THAT(errorOfText(d.json()),
                 AllOf(HasSubstr("buffers[0].uri"), HasSubstr("no data that can be read")))
         << uri;
+  }
+  for (const char* uri : {"data:;base64,AA*A", "data:;base64,AA\\u00e4A"}) {
+    d.bufferUri = uri;
+    EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("buffers[0].uri"), HasSubstr("is not base64"))) << uri;
+  }
+  d.bufferUri = "data:;base64,AAAA";
+  EXPECT_THAT(errorOfText(d.json()),
+              AllOf(HasSubstr("buffers[0].uri"), HasSubstr("3 bytes"), HasSubstr("needs 44")));
+}
+
+// The media type says nothing: the content does.
+TEST(GltfHostile, DataUrisOfEveryMediaType) {
+  TriangleDocument d;
+  std::string padded = test::base64(d.bytes);
+  for (const char* type : {"", "application/gltf-buffer", "application/octet-stream;charset=utf-8",
+                           "text/plain", "image/png", "a/b;c=d"}) {
+    d.bufferUri = std::string("data:") + type + ";base64," + padded;
+    EXPECT_EQ(errorOfText(d.json()), "") << type;
+  }
+  std::string escaped = padded;
+  while (escaped.back() == '=') escaped.pop_back();
+  for (const std::string& data : {escaped, escaped + "%3D%3d", padded + "AAAA", padded + "\\n"}) {
+    d.bufferUri = "DATA:;BASE64," + data;
+    EXPECT_EQ(errorOfText(d.json()), "") << data;
+  }
+  const std::string png =
+      "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGNgYGAAAAAEAAH2FzhVAAAAAElFTkSuQmCC";
+  for (const char* type : {"", "image/png", "image/jpg", "image/PNG", "image/jpeg", "text/plain",
+                           "image/png;charset=utf-8", "application/octet-stream"}) {
+    TriangleDocument image;
+    image.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0})";
+    image.extra = R"(,"images":[{"uri":"data:)" + std::string(type) + ";base64," + png + R"("}],
+        "textures":[{"source":0}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+    TemporaryFolder folder;
+    Diagnostics warnings;
+    const Scene s = loadText(folder, image.json(), warnings);
+    ASSERT_EQ(s.textures.size(), 1u) << type << warnings.format();
+    EXPECT_EQ(s.textures[0].rgba, (std::vector<uint8_t>{0, 0, 0, 255})) << type;
   }
 }
 
@@ -258,7 +298,8 @@ TEST(GltfHostile, IndicesPastTheVertices) {
 TEST(GltfHostile, AttributesOfOtherLengthsAndTypes) {
   TriangleDocument d;
   d.primitive = R"({"attributes":{"POSITION":0,"NORMAL":1},"indices":1})";
-  EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("NORMAL"), HasSubstr("VEC3")));
+  EXPECT_THAT(warningsOfText(d.json()),
+              AllOf(HasSubstr("NORMAL"), HasSubstr("VEC3"), HasSubstr("flat-shaded")));
   d = {};
   d.primitive = R"({"attributes":{"POSITION":0},"indices":0})";
   EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("indices"), HasSubstr("SCALAR")));
@@ -270,7 +311,7 @@ TEST(GltfHostile, AttributesOfOtherLengthsAndTypes) {
 TEST(GltfHostile, ImageViewsAreChecked) {
   TriangleDocument d;
   d.extra = R"(,"images":[{"bufferView":5,"mimeType":"image/png"}])";
-  EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("images[0].bufferView"), HasSubstr("index 5")));
+  EXPECT_THAT(warningsOfText(d.json()), AllOf(HasSubstr("images[0].bufferView"), HasSubstr("index 5")));
 }
 
 TEST(GltfHostile, ImageThatIsNoImage) {
@@ -279,15 +320,17 @@ TEST(GltfHostile, ImageThatIsNoImage) {
   d.extra =
       R"(,"images":[{"name":"noise","uri":"data:image/png;base64,AAECAwQFBgc="}],"textures":[{"source":0}],
       "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
-  EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("model.gltf"), HasSubstr("noise")));
+  EXPECT_THAT(warningsOfText(d.json()),
+              AllOf(HasSubstr("model.gltf"), HasSubstr("noise"), HasSubstr("without its baseColorTexture")));
 }
 
-TEST(GltfHostile, MissingTextureOnlyMattersWhereItIsUsed) {
+TEST(GltfHostile, MissingTexturesAreLeftOut) {
   TriangleDocument d;
   d.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0})";
   d.extra = R"(,"images":[{"uri":"gone.png"}],"textures":[{"source":0}],
       "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
-  EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("gone.png"), HasSubstr("missing")));
+  EXPECT_THAT(warningsOfText(d.json()),
+              AllOf(HasSubstr("gone.png"), HasSubstr("missing"), HasSubstr("without its baseColorTexture")));
   d.extra =
       R"(,"images":[{"uri":"gone.png"}],"textures":[{"source":0}],"materials":[{"normalTexture":{"index":0}}])";
   TemporaryFolder folder;
@@ -313,12 +356,19 @@ TEST(GltfHostile, MaterialsThatCannotBe) {
       {R"("extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":[]}})", "clearcoatFactor"},
       {R"("extensions":{"KHR_materials_clearcoat":[]})", "KHR_materials_clearcoat"},
       {R"("extensions":{"KHR_materials_transmission":{"transmissionTexture":0}})", "transmissionTexture"},
-      {R"("extensions":{"KHR_materials_transmission":{"transmissionFactor":NaN}})", "model.gltf:1:"}};
+      {R"("alphaMode":"GLASS")", "alphaMode"},
+      {R"("alphaCutoff":-1)", "alphaCutoff"},
+      {R"("doubleSided":1)", "doubleSided"},
+      {R"("emissiveFactor":[1e39,0,0])", "not a finite number"},
+      {R"("emissiveFactor":"red")", "emissiveFactor"},
+      {R"("extensions":[])", "materials[0].extensions"},
+      {R"("pbrMetallicRoughness":0.5)", "pbrMetallicRoughness"},
+      {R"("name":7)", "materials[0].name"}};
   for (const auto& [material, message] : wrong) {
     TriangleDocument d;
     d.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0})";
     d.extra = std::string(R"(,"materials":[{)") + material + "}]";
-    EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("model.gltf"), HasSubstr(message))) << material;
+    EXPECT_THAT(warningsOfText(d.json()), AllOf(HasSubstr("model.gltf"), HasSubstr(message))) << material;
   }
 }
 
@@ -339,18 +389,68 @@ TEST(GltfHostile, ExtensionsAndVersions) {
   EXPECT_FALSE(errorOfText("glTF").empty());
 }
 
+// A light with a mistake shines without it, or is left out.
 TEST(GltfHostile, ALightOrSpotThatCannotBe) {
   TriangleDocument d;
-  d.extra = R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot"}]}})";
-  EXPECT_THAT(errorOfText(d.json()), HasSubstr("needs `spot`"));
-  d.extra =
-      R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{"innerConeAngle":0.9}}]}})";
-  EXPECT_THAT(errorOfText(d.json()), HasSubstr("innerConeAngle"));
-  d.extra = R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"laser"}]}})";
-  EXPECT_THAT(errorOfText(d.json()), HasSubstr("laser"));
-  d.extra = R"(,"extensions":{"KHR_lights_punctual":{"lights":[]}})";
   d.nodes = R"([{"mesh":0,"extensions":{"KHR_lights_punctual":{"light":0}}}])";
-  EXPECT_THAT(errorOfText(d.json()), HasSubstr("0 lights"));
+  const auto with = [&](const std::string& lights, size_t expected) {
+    d.extra = R"(,"extensions":{"KHR_lights_punctual":{"lights":[)" + lights + "]}}";
+    TemporaryFolder folder;
+    Diagnostics warnings;
+    const Scene s = loadText(folder, d.json(), warnings);
+    EXPECT_EQ(s.lights.size(), expected) << lights;
+    EXPECT_EQ(s.nodes[0].light != kNoIndex, expected > 0) << lights;
+    const float inner = s.lights.empty() ? 0 : s.lights[0].innerConeAngle,
+                outer = s.lights.empty() ? 1 : s.lights[0].outerConeAngle;
+    EXPECT_TRUE(inner <= outer && outer <= 1.5707964f) << lights;
+    return warnings.format();
+  };
+  EXPECT_THAT(with(R"({"type":"spot"})", 1), HasSubstr("`spot` is missing"));
+  for (const char* cone : {R"("innerConeAngle":0.9)", R"("innerConeAngle":0.3,"outerConeAngle":0.3)",
+                           R"("innerConeAngle":0,"outerConeAngle":0)", R"("innerConeAngle":3)"})
+    EXPECT_THAT(with(R"({"type":"spot","spot":{)" + std::string(cone) + "}}", 1),
+                AllOf(HasSubstr("lights[0].spot"), HasSubstr("innerConeAngle"), HasSubstr("hard")))
+        << cone;
+  EXPECT_THAT(with(R"({"type":"spot","spot":{"outerConeAngle":2}})", 1), HasSubstr("exceeds a right angle"));
+  EXPECT_THAT(with(R"({"type":"spot","spot":{"outerConeAngle":1.5707963267948966}})", 1),
+              testing::Not(HasSubstr("outerConeAngle")));
+  EXPECT_THAT(with(R"({"type":"laser"})", 0), AllOf(HasSubstr("laser"), HasSubstr("the light is left out")));
+  EXPECT_THAT(with(R"({"type":"point","intensity":-1})", 0), HasSubstr("lights[0].intensity"));
+  EXPECT_THAT(with(R"({"type":"point","color":[1]})", 1), HasSubstr("lights[0].color"));
+  EXPECT_THAT(with(R"({"type":"point","range":-2})", 1), HasSubstr("lights[0].range"));
+  EXPECT_THAT(with("", 0), HasSubstr("0 lights"));
+}
+
+// Cameras, skins and the like are left out one by one.
+TEST(GltfHostile, DetailsThatCannotBeCostOnlyThemselves) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {R"(,"cameras":[{"type":"perspective"}])", "cameras[0]"},
+      {R"(,"cameras":[{"type":"fisheye"}])", "fisheye"},
+      {R"(,"cameras":[{"type":"perspective","perspective":{"yfov":-1}}])", "yfov"},
+      {R"(,"cameras":[])", "nodes[0].camera"},
+      {R"(,"skins":[{"joints":[]}])", "skins[0]"},
+      {R"(,"skins":[{"joints":[7]}])", "index 7"},
+      {R"(,"skins":[{"joints":[0],"inverseBindMatrices":9}])", "inverseBindMatrices"},
+      {R"(,"scene":4)", "the first scene is shown"},
+      {R"(,"samplers":[{"magFilter":1,"wrapS":2}])", "samplers[0].wrapS"},
+      {R"(,"textures":[{"source":3}])", "textures[0].source"},
+      {R"(,"textures":[{"sampler":"one"}])", "textures[0].sampler"},
+      {R"(,"images":[{}])", "neither uri nor bufferView"},
+      {R"(,"extensions":{"KHR_lights_punctual":{"lights":{}}})", "the lights are left out"},
+      {R"(,"animations":[{"channels":[],"samplers":[]}])", "animations[0]"}};
+  for (const auto& [part, message] : wrong) {
+    TriangleDocument d;
+    d.nodes = R"([{"mesh":0,"camera":0,"skin":0,"weights":[1]}])";
+    d.extra = part;
+    std::string text = d.json();
+    if (std::string_view(part).starts_with(R"(,"scene":)")) text.replace(text.find(R"("scene":0,)"), 10, "");
+    EXPECT_THAT(warningsOfText(text), HasSubstr(message)) << part;
+  }
+  TriangleDocument d;
+  d.primitive =
+      R"({"attributes":{"POSITION":0},"mode":9},{"attributes":{"POSITION":0},"indices":1,"material":5})";
+  EXPECT_THAT(warningsOfText(d.json()),
+              AllOf(HasSubstr("primitives[0].mode"), HasSubstr("primitives[1].material")));
 }
 
 TEST(GltfHostile, GlbThatLiesAboutItsLengths) {

@@ -11,6 +11,7 @@ using test::errorOfText;
 using test::loadText;
 using test::TemporaryFolder;
 using test::TriangleDocument;
+using test::warningsOfText;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -18,7 +19,8 @@ TEST(Gltf, LoadsATriangleAndGivesItItsFlatNormal) {
   TemporaryFolder folder;
   Diagnostics warnings;
   const Scene s = loadText(folder, TriangleDocument{}.json(), warnings);
-  EXPECT_TRUE(warnings.list().empty()) << warnings.format();
+  ASSERT_EQ(warnings.list().size(), 1u) << warnings.format();
+  EXPECT_THAT(warnings.format(), AllOf(HasSubstr("meshes[0].primitives[0]"), HasSubstr("has no material")));
   ASSERT_EQ(s.meshes.size(), 1u);
   ASSERT_EQ(s.meshes[0].primitives.size(), 1u);
   const Primitive& p = s.meshes[0].primitives[0];
@@ -224,10 +226,137 @@ TEST(Gltf, SkinnedMeshesStandAsTheirJointsHoldThem) {
   EXPECT_LT(glm::distance(g.positions[1], glm::vec3(1, 3, 0)), 1e-5f);
   EXPECT_LT(glm::distance(g.positions[2], glm::vec3(0, 1 + 0.8f * 3, 0)), 1e-5f);
   d.bytes[44] = 7;
-  EXPECT_THAT(errorOfText(d.json()), HasSubstr("joint 7 of a skin with 2 joints"));
+  EXPECT_THAT(warningsOfText(d.json()),
+              AllOf(HasSubstr("joint 7 of a skin with 2 joints"), HasSubstr("unskinned")));
   d.bytes[44] = 0;
   d.extra = R"(,"skins":[{"joints":[1,2],"inverseBindMatrices":0}])";
-  EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("skins[0]"), HasSubstr("MAT4")));
+  EXPECT_THAT(warningsOfText(d.json()),
+              AllOf(HasSubstr("skins[0]"), HasSubstr("MAT4"), HasSubstr("unskinned")));
+}
+
+// Eight joints of weight 1/16 in the first set and 3/16 in the second, each moved along x by its number.
+TEST(Gltf, AllSetsOfJointsCount) {
+  TriangleDocument d;
+  d.bytes.resize(44);
+  for (int vertex = 0; vertex < 3; ++vertex) test::appendBytes<uint8_t>(d.bytes, {0, 1, 2, 3});
+  for (int vertex = 0; vertex < 3; ++vertex) test::appendBytes<uint8_t>(d.bytes, {4, 5, 6, 7});
+  test::appendBytes(d.bytes, std::vector<float>(12, 1 / 16.0f));
+  test::appendBytes(d.bytes, std::vector<float>(12, 3 / 16.0f));
+  const std::string floats = R"("componentType":5126,"count":3,"type":"VEC4"})";
+  const std::string bytes = R"("componentType":5121,"count":3,"type":"VEC4"})";
+  d.accessors = R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+      {"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"},
+      {"bufferView":2,)" +
+                bytes + R"(,{"bufferView":2,"byteOffset":12,)" + bytes + R"(,{"bufferView":3,)" + floats +
+                R"(,{"bufferView":3,"byteOffset":48,)" + floats + "]";
+  d.views = R"([{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6},
+      {"buffer":0,"byteOffset":44,"byteLength":24},{"buffer":0,"byteOffset":68,"byteLength":96}])";
+  d.nodes = R"([{"mesh":0,"skin":0})";
+  std::string roots = "0", joints;
+  for (int i = 0; i < 8; ++i) {
+    d.nodes += R"(,{"translation":[)" + std::to_string(i) + ",0,0]}";
+    roots += "," + std::to_string(i + 1);
+    joints += (i ? "," : "") + std::to_string(i + 1);
+  }
+  d.nodes += "]";
+  d.scenes = R"([{"nodes":[)" + roots + "]}]";
+  d.extra = R"(,"skins":[{"joints":[)" + joints + "]}]";
+  const auto xOf = [&](const std::string& attributes) {
+    d.primitive = R"({"attributes":{"POSITION":0,)" + attributes + R"(},"indices":1})";
+    TemporaryFolder folder;
+    Diagnostics warnings;
+    const Scene s = loadText(folder, d.json(), warnings);
+    const Geometry g = flatten(s);
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(g.positions[i].x - float(i == 1), g.positions[0].x, 1e-5f);
+    return g.positions.at(0).x;
+  };
+  EXPECT_NEAR(xOf(R"("JOINTS_0":2,"JOINTS_1":3,"WEIGHTS_0":4,"WEIGHTS_1":5)"), (6 + 3 * 22) / 16.0f, 1e-5f);
+  EXPECT_NEAR(xOf(R"("JOINTS_0":2,"WEIGHTS_0":4)"), 1.5f, 1e-5f);  // weights are normalised
+  EXPECT_NEAR(xOf(R"("JOINTS_0":3,"WEIGHTS_0":4,"WEIGHTS_1":5)"), 5.5f, 1e-5f);
+  EXPECT_THAT(warningsOfText(d.json()), HasSubstr("WEIGHTS_1 without JOINTS_1"));
+}
+
+// glTF 2.0, 2.7: a whole number may have a fraction or an exponent.
+TEST(Gltf, IntegersInEverySpelling) {
+  TemporaryFolder folder;
+  Diagnostics warnings;
+  TriangleDocument d;
+  d.bytes.resize(44);
+  const uint64_t hash = loadText(folder, d.json(), warnings).hash;
+  for (const char* tail : {".0", "e0", ".0e0", "E+0", ".00e-0"}) {
+    std::string text = d.json();
+    for (const char* key : {"scene", "mesh", "POSITION", "indices", "bufferView", "componentType", "count",
+                            "buffer", "byteLength", "byteOffset"}) {
+      const std::string quoted = "\"" + std::string(key) + "\":";
+      for (size_t at = text.find(quoted); at != std::string::npos; at = text.find(quoted, at + 1)) {
+        const size_t end = text.find_first_not_of("0123456789", at + quoted.size());
+        text.insert(end, tail);
+      }
+    }
+    text.replace(text.find("[0]"), 3, "[0" + std::string(tail) + "]");
+    EXPECT_EQ(loadText(folder, text, warnings).hash, hash) << text << warnings.format();
+  }
+  d.accessors.replace(d.accessors.find("\"count\":3"), 9, "\"count\":2.5");
+  EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("accessors[0].count"), HasSubstr("a whole number")));
+}
+
+TEST(Gltf, SamplersSayHowTexturesAreFiltered) {
+  const auto nearest = [](const std::string& sampler, std::string* messages = nullptr) {
+    TriangleDocument d;
+    d.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0})";
+    d.extra =
+        R"(,"images":[{"uri":"data:;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGNgYGAAAAAEAAH2FzhVAAAAAElFTkSuQmCC"}],
+        "samplers":[{)" +
+        sampler + R"(}],"textures":[{"source":0,"sampler":0}],
+        "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+    TemporaryFolder folder;
+    Diagnostics warnings;
+    const bool result = loadText(folder, d.json(), warnings).materials[0].baseColorTexture.nearest;
+    if (messages) *messages = warnings.format();
+    return result;
+  };
+  EXPECT_TRUE(nearest(R"("magFilter":9728,"minFilter":9728)"));
+  for (const char* mipmap : {"9984", "9986"}) EXPECT_TRUE(nearest(std::string(R"("minFilter":)") + mipmap));
+  EXPECT_TRUE(nearest(R"("magFilter":9728)"));
+  EXPECT_FALSE(nearest(R"("magFilter":9729,"minFilter":9987)"));
+  EXPECT_FALSE(nearest(R"("minFilter":9985)"));
+  EXPECT_FALSE(nearest(""));
+  std::string messages;
+  EXPECT_TRUE(nearest(R"("magFilter":9728,"minFilter":9987)", &messages));
+  EXPECT_THAT(messages, AllOf(HasSubstr("samplers[0]"), HasSubstr("minFilter is ignored")));
+  EXPECT_FALSE(nearest(R"("magFilter":9729,"minFilter":9984)", &messages));
+  EXPECT_THAT(messages, HasSubstr("minFilter is ignored"));
+}
+
+// What is valid and not read has a warning that names it.
+TEST(Gltf, WhatIsNotReadIsTold) {
+  const auto told = [](const char* nodes, const char* scenes, const char* extra) {
+    TriangleDocument d;
+    if (*nodes) d.nodes = nodes;
+    if (*scenes) d.scenes = scenes;
+    d.extra = extra;
+    return warningsOfText(d.json());
+  };
+  EXPECT_THAT(
+      told(R"([{"mesh":0,"name":"far","extensions":{"KHR_node_visibility":{"visible":false}}}])", "", ""),
+      AllOf(HasSubstr("nodes[0] `far`"), HasSubstr("KHR_node_visibility is ignored: the node is shown")));
+  EXPECT_THAT(told(R"([{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{}}}])", "", ""),
+              HasSubstr("the mesh is shown once"));
+  EXPECT_THAT(told("", "", R"(,"extensionsUsed":["EXT_other"])"), HasSubstr("EXT_other"));
+  EXPECT_THAT(told("", R"([{"nodes":[0]},{"nodes":[0]}])", ""), HasSubstr("1 other scene(s)"));
+  EXPECT_THAT(told("", "", R"(,"materials":[{"occlusionTexture":{"index":0}}],"textures":[{}])"),
+              AllOf(HasSubstr("materials[0]"), HasSubstr("occlusionTexture is ignored")));
+  EXPECT_THAT(told("", "", R"(,"textures":[{"extensions":{"KHR_texture_basisu":{"source":0}}}])"),
+              AllOf(HasSubstr("textures[0]"), HasSubstr("KHR_texture_basisu")));
+  TriangleDocument d;
+  d.primitive = R"({"attributes":{"POSITION":0,"COLOR_1":0,"JOINTS_0":0,"_OWN":0},"indices":1,
+      "targets":[{"POSITION":0,"COLOR_0":0}]},{"attributes":{"POSITION":0},"mode":0},
+      {"attributes":{"POSITION":0},"mode":1})";
+  EXPECT_THAT(warningsOfText(d.json()),
+              AllOf(HasSubstr("COLOR_1 is ignored"), HasSubstr("JOINTS_0 without WEIGHTS_0"),
+                    HasSubstr("morph targets do not change COLOR_0"), HasSubstr("primitives[1]"),
+                    HasSubstr("points and lines are not drawn"), HasSubstr("primitives[2]"),
+                    testing::Not(HasSubstr("_OWN"))));
 }
 
 }  // namespace

@@ -46,7 +46,10 @@ std::string errorOfJson(const std::string& text) {
 
 TEST(SceneFile, EverythingItCanSay) {
   TemporaryFolder folder;
-  folder.write("models/tri.gltf", TriangleDocument{}.json());
+  TriangleDocument triangle;
+  triangle.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0})";
+  triangle.extra = R"(,"materials":[{"pbrMetallicRoughness":{"metallicFactor":0}}])";
+  folder.write("models/tri.gltf", triangle.json());
   Diagnostics warnings;
   const Scene s = loadJson(folder, R"({
     "name": "all", "description": "x",

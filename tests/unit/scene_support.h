@@ -156,6 +156,14 @@ inline std::string errorOfText(const std::string& text, const std::string& name 
   return errorOf([&] { loadText(folder, text, warnings, name); });
 }
 
+// The warnings about a model that can be shown.
+inline std::string warningsOfText(const std::string& text, const std::string& name = "model.gltf") {
+  TemporaryFolder folder;
+  Diagnostics warnings;
+  EXPECT_EQ(errorOf([&] { flatten(loadText(folder, text, warnings, name)); }), "");
+  return warnings.format();
+}
+
 // Whether a binary document in which one byte is changed still loads; if not, its message must be one
 // about invalid input.
 inline bool loadsChanged(const TemporaryFolder& folder, const std::string& good, size_t at, int change) {

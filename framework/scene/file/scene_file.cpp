@@ -173,7 +173,8 @@ class Parser {
     if (l.type == LightType::Spot) {
       const double inner = r.number("inner_cone_deg", 0, 0, 90),
                    outer = r.number("outer_cone_deg", 45, 0, 90);
-      if (inner >= outer) mistake(r, "outer_cone_deg", "outer_cone_deg must be larger than inner_cone_deg");
+      if (inner > outer)
+        mistake(r, "outer_cone_deg", "outer_cone_deg must not be smaller than inner_cone_deg");
       l.innerConeAngle = float(glm::radians(inner));
       l.outerConeAngle = float(glm::radians(outer));
     }

@@ -130,6 +130,7 @@ size_t sparseIndex(const Context& c, const tinygltf::Accessor& a, const SparseVi
 
 std::vector<float> readFloats(const Context& c, int accessor, int components, const std::string& path) {
   const tinygltf::Accessor& a = c.model.accessors.at(size_t(accessor));
+  if (a.count == 0) c.fail(path, "the accessor has no elements that can be read");
   const int expected = components == 16  ? TINYGLTF_TYPE_MAT4
                        : components == 1 ? TINYGLTF_TYPE_SCALAR
                                          : components;

@@ -1,6 +1,4 @@
 // Builds animations: keys of nodes and of morph weights.
-#include <tiny_gltf.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -17,38 +15,49 @@ using Interpolation = AnimationChannel::Interpolation;
 
 class AnimationBuilder {
  public:
-  AnimationBuilder(Context& c, size_t index)
-      : c_(c), from_(c.model.animations[index]), place_(nameOf("animations", index, from_.name)) {
-    out_.name = from_.name.empty() ? "animation " + std::to_string(index) : from_.name;
+  AnimationBuilder(Context& c, size_t index) : c_(c), from_(itemsOf(&c.root, "animations")[index]) {
+    const std::string name = textOr(&from_, "name", "");
+    place_ = nameOf("animations", index, name);
+    out_.name = name.empty() ? "animation " + std::to_string(index) : name;
   }
 
+  // One that is wrong keeps its number, without channels.
   Animation build() {
-    for (size_t i = 0; i < from_.channels.size(); ++i)
-      channel(from_.channels[i], place_ + ".channels[" + std::to_string(i) + "]");
+    const auto channels = [&] {
+      const std::vector<json::Value>& list = itemsOf(&from_, "channels");
+      for (size_t i = 0; i < list.size(); ++i)
+        channel(list[i], place_ + ".channels[" + std::to_string(i) + "]");
+    };
+    if (!c_.attempt(channels, "the animation is left out")) out_.channels.clear();
     return std::move(out_);
   }
 
  private:
-  void channel(const tinygltf::AnimationChannel& from, const std::string& place) {
-    if (from.target_node < 0) return;  // glTF 2.0, 3.11: to be ignored
+  void channel(const json::Value& from, const std::string& place) {
+    const json::Value* target = from.find("target");
+    const int moved = indexIn(target, "node");
+    if (moved < 0) return;  // glTF 2.0, 3.11: to be ignored
     AnimationChannel channel;
-    channel.node = c_.sceneNode[size_t(from.target_node)];
+    channel.node = c_.sceneNode[size_t(moved)];
     if (channel.node == kNoIndex) return;
-    if (!pathOf(from.target_path, channel.path))
-      return c_.warn(place, "`" + from.target_path.substr(0, 32) + "` of a node cannot be animated: ignored");
+    const std::string path = textOr(target, "path", "");
+    if (!pathOf(path, channel.path))
+      return c_.warn(place, "`" + path.substr(0, 32) + "` of a node cannot be animated: ignored");
     const Node& node = c_.scene.nodes[channel.node];
     if (channel.path != Path::Weights && node.matrix)
       return c_.warn(place, "node `" + node.name + "` has a matrix, which keys cannot move: ignored",
                      "export it with translation, rotation and scale");
     if (!seen_.insert({channel.node, channel.path}).second)
       return c_.warn(place, "another channel moves the same property of node `" + node.name + "`: ignored");
-    const tinygltf::AnimationSampler& sampler = from_.samplers.at(size_t(from.sampler));
-    const std::string at = place_ + ".samplers[" + std::to_string(from.sampler) + "]";
-    channel.interpolation = sampler.interpolation == "STEP"          ? Interpolation::Step
-                            : sampler.interpolation == "CUBICSPLINE" ? Interpolation::CubicSpline
-                                                                     : Interpolation::Linear;
-    readTimes(sampler.input, at, channel);
-    if (!readValues(sampler.output, at, node, channel)) return;
+    const int number = indexIn(&from, "sampler");
+    const json::Value& sampler = itemsOf(&from_, "samplers").at(size_t(number));
+    const std::string at = place_ + ".samplers[" + std::to_string(number) + "]",
+                      interpolation = textOr(&sampler, "interpolation", "LINEAR");
+    channel.interpolation = interpolation == "STEP"          ? Interpolation::Step
+                            : interpolation == "CUBICSPLINE" ? Interpolation::CubicSpline
+                                                             : Interpolation::Linear;
+    readTimes(indexIn(&sampler, "input"), at, channel);
+    if (!readValues(indexIn(&sampler, "output"), at, node, channel)) return;
     out_.channels.push_back(std::move(channel));
   }
 
@@ -115,7 +124,7 @@ class AnimationBuilder {
   }
 
   Context& c_;
-  const tinygltf::Animation& from_;
+  const json::Value& from_;
   std::string place_;
   Animation out_;
   std::set<std::pair<uint32_t, Path>> seen_;
@@ -124,9 +133,11 @@ class AnimationBuilder {
 }  // namespace
 
 void buildAnimations(Context& c) {
-  for (size_t i = 0; i < c.model.animations.size(); ++i)
+  for (size_t i = 0; i < itemsOf(&c.root, "animations").size(); ++i)
     c.scene.animations.push_back(AnimationBuilder(c, i).build());
-  if (!c.scene.animations.empty()) c.scene.animations[0].plays = true;
+  const auto moves =
+      std::ranges::find_if(c.scene.animations, [](const Animation& a) { return !a.channels.empty(); });
+  if (moves != c.scene.animations.end()) moves->plays = true;
 }
 
 }  // namespace fovea::scene::gltf

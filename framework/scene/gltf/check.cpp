@@ -32,6 +32,34 @@ const json::Value* extensionOf(const json::Value* object, std::string_view name)
   return memberOf(memberOf(object, "extensions"), name);
 }
 
+double numberOr(const json::Value* object, std::string_view key, double fallback) {
+  const json::Value* v = memberOf(object, key);
+  return v && v->isNumber() ? v->real : fallback;
+}
+
+std::string textOr(const json::Value* object, std::string_view key, std::string fallback) {
+  const json::Value* v = memberOf(object, key);
+  return v && v->isString() ? v->string : std::move(fallback);
+}
+
+std::array<double, 3> threeOr(const json::Value* object, std::string_view key, double fallback) {
+  std::array<double, 3> out{fallback, fallback, fallback};
+  const json::Value* v = memberOf(object, key);
+  for (size_t i = 0; v && i < std::min<size_t>(3, v->items.size()); ++i) out[i] = v->items[i].real;
+  return out;
+}
+
+int indexIn(const json::Value* object, std::string_view key) {
+  const json::Value* v = memberOf(object, key);
+  return v && v->isInt() ? int(v->integer) : -1;
+}
+
+const std::vector<json::Value>& itemsOf(const json::Value* object, std::string_view key) {
+  static const std::vector<json::Value> kNone;
+  const json::Value* v = memberOf(object, key);
+  return v ? v->items : kNone;
+}
+
 bool isPlaceholder(const json::Value& buffer) {
   const json::Value* fallback = memberOf(extensionOf(&buffer, kMeshopt), "fallback");
   return fallback && fallback->boolean;
@@ -47,12 +75,12 @@ namespace {
 class VersionChecker : DocumentReader {
  public:
   using DocumentReader::DocumentReader;
-  bool run(Diagnostics& warnings) {
+  bool run() {
     if (!root_.isObject()) {
       error(root_, "", "a glTF document is an object, this is " + root_.describe());
       return false;
     }
-    return checkAsset() && checkExtensions(warnings);
+    return checkAsset() && checkExtensions();
   }
 
  private:
@@ -101,7 +129,7 @@ class VersionChecker : DocumentReader {
     return list;
   }
 
-  bool checkExtensions(Diagnostics& warnings) {
+  bool checkExtensions() {
     bool fine = true;
     for (const Value* v : stringsOf("extensionsRequired")) {
       if (isSupported(v->string)) continue;
@@ -110,16 +138,7 @@ class VersionChecker : DocumentReader {
             "the model requires the extension `" + v->string + "`, which is not supported",
             "export it without " + v->string + "; supported are " + join(supportedExtensions()));
     }
-    if (!fine) return false;
-    std::vector<std::string> ignored;
-    for (const Value* v : stringsOf("extensionsUsed"))
-      if (!isSupported(v->string) &&
-          !v->string.starts_with("KHR_materials_"))  // buildMaterials() names those
-        ignored.push_back(v->string);
-    if (!ignored.empty())
-      warnings.warning({source_.name, 0, 0}, "extensionsUsed",
-                       "not supported, so that the model is shown without what they add: " + join(ignored));
-    return true;
+    return fine;
   }
 
   static std::string join(const std::vector<std::string>& list) {
@@ -131,17 +150,28 @@ class VersionChecker : DocumentReader {
 
 }  // namespace
 
-bool checkVersion(const json::Value& root, const Source& source, Diagnostics& errors, Diagnostics& warnings) {
-  return VersionChecker(root, source, errors).run(warnings);
+bool checkVersion(const json::Value& root, const Source& source, Findings& found) {
+  return VersionChecker(root, source, found).run();
 }
 
-void checkDocument(const json::Value& root, const Source& source, Diagnostics& warnings) {
-  Diagnostics errors;
-  if (checkVersion(root, source, errors, warnings)) {
-    checkData(root, source, errors);
-    checkContent(root, source, errors);
+void Findings::apply(json::Value& value) const {
+  const auto gone = removed.find(&value);
+  for (json::Value& item : value.items) apply(item);
+  for (json::Member& m : value.members) apply(m.value);
+  if (gone != removed.end())
+    std::erase_if(value.members, [&](const json::Member& m) { return gone->second.contains(m.key); });
+}
+
+void checkDocument(json::Value& root, const Source& source, Diagnostics& warnings) {
+  Findings found;
+  if (checkVersion(root, source, found)) {
+    checkData(root, source, found);
+    checkContent(root, source, found);
+    checkUnread(root, source, found);
   }
-  errors.throwIfErrors();
+  found.errors.throwIfErrors();
+  for (const Diagnostic& d : found.warnings.list()) warnings.add(d);
+  found.apply(root);
 }
 
 }  // namespace fovea::scene::gltf

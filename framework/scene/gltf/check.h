@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "framework/scene/gltf/internal.h"
@@ -19,17 +21,54 @@ inline std::string inside(const std::string& path, std::string_view extension) {
   return json::joinPath(json::joinPath(path, "extensions"), extension);
 }
 
+// What the checks find: errors, which spoil the model, and warnings about details that are removed from the document.
+struct Findings {
+  Diagnostics errors, warnings;
+  std::map<const json::Value*, std::set<std::string, std::less<>>> removed;  // members of objects
+
+  // Removes them.
+  void apply(json::Value& value) const;
+};
+
 // What all three parts need: access to lists of objects, indices into other lists, and extensions.
 class DocumentReader {
  public:
   using Value = json::Value;
   using ObjectReader = json::ObjectReader;
-  DocumentReader(const Value& root, const Source& source, Diagnostics& errors)
-      : root_(root), source_(source), errors_(errors) {}
+  DocumentReader(const Value& root, const Source& source, Findings& found)
+      : root_(root), source_(source), found_(found), errors_(found.errors) {}
 
  protected:
   void error(const Value& v, std::string path, std::string message, std::string remedy = {}) {
     errors_.error(v.where.location(), std::move(path), std::move(message), std::move(remedy));
+  }
+
+  void warn(const Value& v, std::string path, std::string message, std::string remedy = {}) {
+    found_.warnings.warning(v.where.location(), std::move(path), std::move(message), std::move(remedy));
+  }
+
+  // Checks a detail without which the model can be shown. If there are mistakes in it, they become warnings that end
+  // with `consequence`, and the result is false.
+  bool attempt(const std::string& consequence, const std::function<void()>& check) {
+    const Diagnostics before = std::exchange(errors_, Diagnostics());
+    check();
+    const Diagnostics mistakes = std::exchange(errors_, before);
+    for (Diagnostic d : mistakes.list()) {
+      d.severity = Severity::Warning;
+      d.message += ": " + consequence;
+      found_.warnings.add(std::move(d));
+    }
+    return mistakes.list().empty();
+  }
+
+  void remove(const Value& object, std::string_view key) { found_.removed[&object].emplace(key); }
+
+  // The same for the member `key` of an object, which is removed if there are mistakes in it.
+  bool optional(const Value& object, std::string_view key, const std::string& consequence,
+                const std::function<void()>& check) {
+    const bool good = attempt(consequence, check);
+    if (!good) remove(object, key);
+    return good;
   }
 
   size_t sizeOf(std::string_view array) const {
@@ -95,7 +134,7 @@ class DocumentReader {
   }
 
   void nameOfObject(const Value& object, const std::string& path) {
-    ObjectReader(object, path, errors_).text("name");
+    optional(object, "name", "it has no name", [&] { ObjectReader(object, path, errors_).text("name"); });
   }
 
   // The extension `name` of an object; null if absent or invalid.
@@ -117,15 +156,18 @@ class DocumentReader {
 
   const Value& root_;
   const Source& source_;
-  Diagnostics& errors_;
+  Findings& found_;
+  Diagnostics& errors_;  // of found_
 };
 
 // Checks version and extensions. If false, nothing else in the file can be trusted to have its usual meaning.
-bool checkVersion(const json::Value& root, const Source& source, Diagnostics& errors, Diagnostics& warnings);
+bool checkVersion(const json::Value& root, const Source& source, Findings& found);
 // Checks buffers, views, accessors, images and textures: everything that could cause a read past the
 // end of something.
-void checkData(const json::Value& root, const Source& source, Diagnostics& errors);
+void checkData(const json::Value& root, const Source& source, Findings& found);
 // Checks materials, meshes, cameras, lights, nodes, skins and animations.
-void checkContent(const json::Value& root, const Source& source, Diagnostics& errors);
+void checkContent(const json::Value& root, const Source& source, Findings& found);
+// Reports what is valid and not read.
+void checkUnread(const json::Value& root, const Source& source, Findings& found);
 
 }  // namespace fovea::scene::gltf

@@ -8,8 +8,6 @@
 namespace fovea::scene::gltf {
 namespace {
 
-constexpr size_t kMostOfMediaType = 100;  // characters before the data of a data uri
-
 int componentBytes(int64_t type) {
   switch (type) {
     case 5120:
@@ -50,7 +48,12 @@ class DataChecker : DocumentReader {
     checkBuffers();
     checkBufferViews();
     findCompressedAccessors();
-    each("accessors", [&](const Value& v, const std::string& path) { checkAccessor(v, path); });
+    findShapes();
+    each("accessors", [&](const Value& v, const std::string& path) {
+      nameOfObject(v, path);
+      if (shapes_.contains(&v)) return checkAccessor(v, path);
+      if (!attempt("what it is for is left out", [&] { checkAccessor(v, path); })) remove(v, "count");
+    });
     checkImagesAndTextures();
   }
 
@@ -61,7 +64,7 @@ class DataChecker : DocumentReader {
     const std::string place = path + ".uri";
     if (!uri->isString()) return error(*uri, place, "expected a text, found " + uri->describe());
     if (isDataUri(uri->string)) {
-      if (uri->string.substr(0, kMostOfMediaType).find(";base64,") == std::string::npos)
+      if (!dataOf(uri->string))
         error(*uri, place, "the data uri has no data that can be read",
               "write data:application/octet-stream;base64, and the data");
       return;
@@ -216,7 +219,6 @@ class DataChecker : DocumentReader {
   }
 
   void checkAccessor(const Value& v, const std::string& path) {
-    nameOfObject(v, path);
     ObjectReader r(v, path, errors_);
     const int64_t view = index(v, path, "bufferView", "bufferViews");
     const int64_t offset = r.integer("byteOffset", 0, 0, kIntMax);
@@ -234,7 +236,9 @@ class DataChecker : DocumentReader {
               "type \"" + type.substr(0, 32) + "\" is none of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4");
       return;
     }
-    for (const char* key : {"min", "max"}) numbersIfPresent(v, path, key, size_t(componentCount(type)));
+    for (const char* key : {"min", "max"})
+      optional(v, key, "it is not needed",
+               [&] { numbersIfPresent(v, path, key, size_t(componentCount(type))); });
     checkSpan(v, path, view, offset, count, elementBytes(type, component), true);
     if (!v.find("bufferView") && uint64_t(count) > kMaxZeroElements && !compressed_.contains(&v))
       error(v, path,
@@ -266,6 +270,20 @@ class DataChecker : DocumentReader {
     }
   }
 
+  // Accessors without which there is no geometry: positions and indices.
+  void findShapes() {
+    const auto add = [&](const Value* object, std::string_view key) {
+      const int i = indexIn(object, key);
+      if (i >= 0 && size_t(i) < sizeOf("accessors"))
+        shapes_.insert(&root_.find("accessors")->items[size_t(i)]);
+    };
+    for (const Value& mesh : itemsOf(&root_, "meshes"))
+      for (const Value& p : itemsOf(&mesh, "primitives")) {
+        add(&p, "indices");
+        add(p.find("attributes"), "POSITION");
+      }
+  }
+
   void checkSparse(const Value& v, const std::string& path, int64_t elements, int64_t bytes) {
     if (!v.isObject()) return error(v, path, "expected an object, found " + v.describe());
     ObjectReader r(v, path, errors_);
@@ -293,35 +311,54 @@ class DataChecker : DocumentReader {
   void checkImagesAndTextures() {
     each("images", [&](const Value& v, const std::string& path) {
       nameOfObject(v, path);
-      const int64_t view = index(v, path, "bufferView", "bufferViews");
-      if (view >= 0 && extensionOf(&root_.find("bufferViews")->items[size_t(view)], kMeshopt))
-        error(v, path, "the image lies in bufferViews[" + std::to_string(view) + "], which is compressed");
-      ObjectReader(v, path, errors_).text("mimeType");
-      if (v.find("uri") && v.find("bufferView"))
-        error(v, path, "an image has either a uri or a bufferView, this one both");
-      if (!v.find("uri") && !v.find("bufferView")) error(v, path, "the image has neither uri nor bufferView");
-      checkUri(v, path, false);
+      const bool good = attempt("the image is left out", [&] { checkImage(v, path); });
+      if (!good)
+        for (const char* key : {"uri", "bufferView"}) remove(v, key);
     });
     each("samplers", [&](const Value& v, const std::string& path) {
       nameOfObject(v, path);
-      ObjectReader r(v, path, errors_);
-      for (const char* key : {"wrapS", "wrapT", "magFilter", "minFilter"}) r.integer(key, 10497, 0, kIntMax);
+      checkWord(v, path, "wrapS", {33071, 33648, 10497}, "the texture repeats");
+      checkWord(v, path, "wrapT", {33071, 33648, 10497}, "the texture repeats");
+      checkWord(v, path, "magFilter", {9728, 9729}, "the filter is ignored");
+      checkWord(v, path, "minFilter", {9728, 9729, 9984, 9985, 9986, 9987}, "the filter is ignored");
     });
     each("textures", [&](const Value& v, const std::string& path) {
       nameOfObject(v, path);
-      index(v, path, "source", "images");
-      index(v, path, "sampler", "samplers");
+      optional(v, "source", "the texture is left out", [&] { index(v, path, "source", "images"); });
+      optional(v, "sampler", "the texture repeats and is interpolated",
+               [&] { index(v, path, "sampler", "samplers"); });
+    });
+  }
+
+  void checkImage(const Value& v, const std::string& path) {
+    const int64_t view = index(v, path, "bufferView", "bufferViews");
+    if (view >= 0 && extensionOf(&root_.find("bufferViews")->items[size_t(view)], kMeshopt))
+      error(v, path, "the image lies in bufferViews[" + std::to_string(view) + "], which is compressed");
+    if (v.find("uri") && v.find("bufferView"))
+      error(v, path, "an image has either a uri or a bufferView, this one both");
+    if (!v.find("uri") && !v.find("bufferView")) error(v, path, "the image has neither uri nor bufferView");
+    checkUri(v, path, false);
+  }
+
+  // A number that stands for a word.
+  void checkWord(const Value& v, const std::string& path, std::string_view key,
+                 std::initializer_list<int64_t> known, const char* consequence) {
+    const Value* word = v.find(key);
+    if (!word) return;
+    optional(v, key, consequence, [&] {
+      if (!word->isInt() || std::find(known.begin(), known.end(), word->integer) == known.end())
+        error(*word, json::joinPath(path, key), "none of the values that glTF defines: " + word->describe());
     });
   }
 
   uint64_t bufferBytes_ = 0;  // of buffers that are read
-  std::set<const Value*> compressed_;
+  std::set<const Value*> compressed_, shapes_;
 };
 
 }  // namespace
 
-void checkData(const json::Value& root, const Source& source, Diagnostics& errors) {
-  DataChecker(root, source, errors).run();
+void checkData(const json::Value& root, const Source& source, Findings& found) {
+  DataChecker(root, source, found).run();
 }
 
 }  // namespace fovea::scene::gltf

@@ -1,5 +1,6 @@
 // Reads a .gltf or .glb file and the files beside it, and nothing else.
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -75,6 +76,16 @@ std::string percentDecode(std::string_view text) {
   return out;
 }
 
+// -1 for what is none; also of the alphabet for file names (RFC 4648, 5).
+int base64Digit(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  if (c == '+' || c == '-') return 62;
+  if (c == '/' || c == '_') return 63;
+  return -1;
+}
+
 // Matches "http:", "file:", and the "c:" of a Windows path.
 bool hasScheme(std::string_view uri) {
   const size_t colon = uri.find(':');
@@ -121,7 +132,42 @@ Source sourceOf(std::vector<uint8_t> bytes, const fs::path& file) {
   return s;
 }
 
-bool isDataUri(std::string_view uri) { return uri.substr(0, 5) == "data:"; }
+static bool sameLetters(std::string_view text, std::string_view lower) {
+  return std::ranges::equal(text, lower, {}, [](unsigned char c) { return char(std::tolower(c)); });
+}
+
+bool isDataUri(std::string_view uri) { return sameLetters(uri.substr(0, 5), "data:"); }
+
+std::optional<std::string_view> dataOf(std::string_view uri) {
+  constexpr std::string_view kMark = ";base64";
+  const size_t comma = uri.find(',');
+  if (comma == std::string_view::npos || comma < 5 + kMark.size() || comma + 1 == uri.size())
+    return std::nullopt;
+  if (!sameLetters(uri.substr(comma - kMark.size(), kMark.size()), kMark)) return std::nullopt;
+  return uri.substr(comma + 1);
+}
+
+DataUri decodeDataUri(std::string_view uri) {
+  const std::optional<std::string_view> written = dataOf(uri);
+  if (!written) return {{}, "the data uri has no data that can be read"};
+  const std::string decoded = written->find('%') == std::string_view::npos ? "" : percentDecode(*written);
+  const std::string_view text = decoded.empty() ? *written : std::string_view(decoded);
+  DataUri out;
+  out.bytes.reserve(text.size() / 4 * 3 + 3);
+  uint32_t bits = 0;
+  int count = 0;
+  for (size_t i = 0; i < text.size() && text[i] != '='; ++i) {
+    if (std::isspace(static_cast<unsigned char>(text[i]))) continue;
+    const int digit = base64Digit(text[i]);
+    if (digit < 0) return {{}, "character " + std::to_string(i + 1) + " of the data is not base64"};
+    bits = bits << 6 | uint32_t(digit);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    out.bytes.push_back(uint8_t(bits >> count));
+  }
+  return out;
+}
 
 // Links could lead out of the folder, too. The place of the model itself counts as well: collections of links to models
 // and their parts are common.

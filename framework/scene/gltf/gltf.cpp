@@ -23,6 +23,21 @@ void Context::fail(std::string path, std::string message, std::string remedy) co
       {{Severity::Error, {source.name, 0, 0}, std::move(path), std::move(message), std::move(remedy)}});
 }
 
+bool Context::attempt(const std::function<void()>& part, const std::string& consequence) const {
+  try {
+    part();
+    return true;
+  } catch (const Error& e) {
+    if (e.code() != ExitCode::BadInput) throw;
+    for (Diagnostic d : e.diagnostics()) {
+      d.severity = Severity::Warning;
+      d.message += ": " + consequence;
+      warnings.add(std::move(d));
+    }
+    return false;
+  }
+}
+
 std::string nameOf(std::string_view array, size_t index, const std::string& name) {
   std::string text = std::string(array) + "[" + std::to_string(index) + "]";
   if (!name.empty()) text += " `" + name.substr(0, 80) + "`";
@@ -36,7 +51,7 @@ Scene parseGltf(std::vector<uint8_t> bytes, const std::filesystem::path& file, D
   scene.name = file.stem().string();
   scene.source = file.string();
   const Source source = sourceOf(std::move(bytes), file);
-  const json::Value root = json::parse(source.json, source.name);
+  json::Value root = json::parse(source.json, source.name);
   checkDocument(root, source, warnings);
   tinygltf::Model model;
   parseModel(source, root, model);

@@ -3,19 +3,24 @@
 //   file    reads the bytes, checks GLB headers, and finds the JSON text and the binary chunk
 //   check   parses the JSON with the project's own parser and applies every rule that keeps tinygltf and the code
 //           below inside their buffers
-//   parse   calls tinygltf, shut off from the file system except for the buffers that `check` allowed
+//   parse   calls tinygltf, shut off from the file system, for the lists of accessors, buffer views, meshes and nodes,
+//           and reads the buffers
 //   decode  puts the content of compressed buffer views and primitives into buffers of their own
 //   build   makes materials, meshes, nodes, skins and animations
 //
-// tinygltf 2.7 was found to leave the following unguarded. It overflows the stack on deep `extras`, throws on the image
-// URI ".", opens absolute and ../ paths and files of the working folder, reads past a buffer for an image's bufferView
-// and past the end of a GLB whose BIN chunk gives a wrong length, truncates large integers, silently drops primitives
-// and properties of a wrong type, and never checks accessor bounds, node cycles or extensionsRequired.
+// A mistake without which the rest of the model can be shown costs only its detail: `check` reports it as a warning and
+// removes the detail from the document, and `build` reports what it leaves out. Mistakes in the shape of the geometry
+// or in the bounds of data are errors.
+//
+// tinygltf 2.7 was found to leave the following unguarded. It overflows the stack on deep `extras`, reads past the end
+// of a GLB whose BIN chunk gives a wrong length, knows no integers with a fraction, truncates large ones, silently
+// drops primitives and properties of a wrong type, and never checks accessor bounds, node cycles or extensionsRequired.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -64,6 +69,13 @@ Source sourceOf(std::vector<uint8_t> bytes, const std::filesystem::path& file);
 std::vector<uint8_t> readFile(const std::filesystem::path& file);
 
 bool isDataUri(std::string_view uri);
+// The base64 text of a data URI, whatever media type it names; nothing if it has none.
+std::optional<std::string_view> dataOf(std::string_view uri);
+struct DataUri {
+  std::vector<uint8_t> bytes;
+  std::string problem;  // empty if there is none
+};
+DataUri decodeDataUri(std::string_view uri);
 // The file in the folder of the model that a relative URI names, or the problem with it. Percent-encoding is decoded.
 struct ResolvedUri {
   std::filesystem::path file;
@@ -76,8 +88,9 @@ std::string whyMissing(const std::filesystem::path& file);
 
 // ---- check ----
 
-// Throws Error(BadInput) with every mistake and its place.
-void checkDocument(const json::Value& root, const Source& source, Diagnostics& warnings);
+// Throws Error(BadInput) with every mistake that spoils the model, and its place. Other mistakes are warnings, and what
+// they concern is removed from the document.
+void checkDocument(json::Value& root, const Source& source, Diagnostics& warnings);
 
 // The extensions that are read: models that need others are refused.
 const std::vector<std::string>& supportedExtensions();
@@ -89,13 +102,23 @@ inline constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
 // What checkDocument has found valid; null if it is absent.
 const json::Value* memberOf(const json::Value* object, std::string_view key);
 const json::Value* extensionOf(const json::Value* object, std::string_view name);
+double numberOr(const json::Value* object, std::string_view key, double fallback);
+std::string textOr(const json::Value* object, std::string_view key, std::string fallback);
+std::array<double, 3> threeOr(const json::Value* object, std::string_view key, double fallback);
+// -1 if there is none.
+int indexIn(const json::Value* object, std::string_view key);
+// No items if there is no such list.
+const std::vector<json::Value>& itemsOf(const json::Value* object, std::string_view key);
+
+// Whether a filter of a sampler shows the nearest texel.
+bool isNearest(int filter);
 
 // Whether a buffer merely reserves the places of compressed buffer views, so that nothing of it is read.
 bool isPlaceholder(const json::Value& buffer);
 
 // ---- parse ----
 
-// Images are returned as their encoded bytes (Image::image, as_is), external ones only as their URI.
+// The model has accessors, buffer views, buffers, meshes, nodes and scenes; the rest is read from the document.
 void parseModel(const Source& source, const json::Value& root, tinygltf::Model& model);
 
 // ---- decode ----
@@ -130,6 +153,9 @@ struct Context {
   // Of what only diffuse materials lack.
   void warnIfDiffuse(std::string path, std::string message, std::string remedy = {}) const;
   [[noreturn]] void fail(std::string path, std::string message, std::string remedy = {}) const;
+  // Does something without which the rest of the model can be shown. An error of the model in it becomes a warning that
+  // ends with `consequence`, and the result is false.
+  bool attempt(const std::function<void()>& part, const std::string& consequence) const;
 };
 
 // Reads `components` floats per element, with normalised integers converted and sparse values applied. The caller
@@ -146,7 +172,7 @@ std::vector<Camera> readCameras(const Context& c);
 bool isOrthographic(const json::Value& camera);
 void warnOfOrthographic(const Context& c);  // once the nodes are built
 void buildSkins(Context& c);
-void buildAnimations(Context& c);  // the first animation plays
+void buildAnimations(Context& c);  // the first animation that moves anything plays
 
 // Whether a mesh's primitives have `extras.fovea_subdivision` (gltf/cage.cpp).
 bool hasCage(const json::Value& primitives);

@@ -1,6 +1,5 @@
 // Builds materials and textures, and decodes the images that they use.
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <array>
@@ -17,19 +16,6 @@ namespace {
 
 using json::Value;
 
-// What checkDocument has found valid; the fallback if it is absent.
-double numberOr(const Value* object, std::string_view key, double fallback) {
-  const Value* v = memberOf(object, key);
-  return v && v->isNumber() ? v->real : fallback;
-}
-
-std::array<double, 3> threeOr(const Value* object, std::string_view key, double fallback) {
-  std::array<double, 3> out{fallback, fallback, fallback};
-  const Value* v = memberOf(object, key);
-  for (size_t i = 0; v && i < std::min<size_t>(3, v->items.size()); ++i) out[i] = v->items[i].real;
-  return out;
-}
-
 glm::vec2 pairOr(const Value* object, std::string_view key, glm::vec2 fallback) {
   const Value* v = memberOf(object, key);
   return v && v->items.size() == 2 ? glm::vec2(v->items[0].real, v->items[1].real) : fallback;
@@ -37,9 +23,9 @@ glm::vec2 pairOr(const Value* object, std::string_view key, glm::vec2 fallback) 
 
 Wrap wrapOf(int mode) {
   switch (mode) {
-    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+    case 33071:
       return Wrap::Clamp;
-    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+    case 33648:
       return Wrap::Mirror;
     default:
       return Wrap::Repeat;
@@ -75,26 +61,26 @@ class TexCoords {
 
 class MaterialBuilder {
  public:
-  explicit MaterialBuilder(Context& c) : c_(c) {
+  explicit MaterialBuilder(Context& c) : c_(c), images_(itemsOf(&c.root, "images")) {
     findAlike();
     claimMemory();
   }
 
   Material build(size_t index) {
-    const tinygltf::Material& from = c_.model.materials[index];
     const Value* written = &c_.root.find("materials")->items[index];
     const Value* pbr = memberOf(written, "pbrMetallicRoughness");
-    place_ = nameOf("materials", index, from.name);
+    const std::string name = textOr(written, "name", "");
+    place_ = nameOf("materials", index, name);
     texCoords_ = {};
     Material m;
-    m.name = from.name.empty() ? "material " + std::to_string(index) : from.name;
-    const std::vector<double>& color = from.pbrMetallicRoughness.baseColorFactor;
+    m.name = name.empty() ? "material " + std::to_string(index) : name;
+    const std::vector<Value>& color = itemsOf(pbr, "baseColorFactor");
     for (int i = 0; i < 4; ++i)
-      m.baseColor[i] = unitValue(color.size() == 4 ? color[size_t(i)] : 1.0, "baseColorFactor");
+      m.baseColor[i] = unitValue(color.size() == 4 ? color[size_t(i)].real : 1.0, "baseColorFactor");
 
     // These two first: the set of the first one is the only one that diffuse materials know.
-    m.baseColorTexture = use(pbr, "baseColorTexture", Kind::Diffuse);
-    emission(from, written, m);
+    m.baseColorTexture = use(pbr, "baseColorTexture", Kind::Color);
+    emission(written, m);
     if (m.baseColorTexture && m.emissionTexture && m.emissionTexture.set != m.baseColorTexture.set)
       c_.warn(
           place_,
@@ -102,10 +88,11 @@ class MaterialBuilder {
           "with those of the latter");
     metalAndRoughness(pbr, m);
     m.normalTexture = use(written, "normalTexture", Kind::Data);
-    m.normalScale = finite(numberOr(memberOf(written, "normalTexture"), "scale", 1), "normalTexture.scale");
+    m.normalScale =
+        finite(numberOr(memberOf(written, "normalTexture"), "scale", 1), 1, "normalTexture.scale");
     extensions(written, m);
-    alpha(from, m);
-    m.doubleSided = from.doubleSided;
+    alpha(written, m);
+    if (const Value* v = memberOf(written, "doubleSided")) m.doubleSided = v->boolean;
     c_.texCoordsOfMaterial.push_back(texCoords_.sets());
     return m;
   }
@@ -117,25 +104,29 @@ class MaterialBuilder {
     return float(std::clamp(v, 0.0, 1.0));
   }
 
-  float finite(double v, const char* what) {
-    if (!std::isfinite(float(v))) c_.fail(place_, std::string(what) + " is not a finite number");
-    return float(v);
+  // Numbers that single precision cannot hold have their default value.
+  float finite(double v, float fallback, const char* what) {
+    if (std::isfinite(float(v))) return float(v);
+    c_.warn(place_,
+            std::string(what) + " is not a finite number in single precision: it has its default value");
+    return fallback;
   }
 
-  void emission(const tinygltf::Material& from, const Value* written, Material& m) {
+  void emission(const Value* written, Material& m) {
     const double strength =
         numberOr(extensionOf(written, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
-    for (int i = 0; i < 3 && from.emissiveFactor.size() == 3; ++i)
-      m.emission[i] = float(std::max(from.emissiveFactor[size_t(i)] * strength, 0.0));
-    if (!std::isfinite(m.emission.x + m.emission.y + m.emission.z))
-      c_.fail(place_, "the emission is not a finite number");
-    if (m.emission != glm::vec3(0.0f)) m.emissionTexture = use(written, "emissiveTexture", Kind::Diffuse);
+    const std::array<double, 3> factor = threeOr(written, "emissiveFactor", 0);
+    const double most = std::max({factor[0], factor[1], factor[2]}) * strength;
+    if (finite(most, -1, "the emission") == float(most))
+      for (int i = 0; i < 3; ++i) m.emission[i] = float(std::max(factor[size_t(i)] * strength, 0.0));
+    if (m.emission != glm::vec3(0.0f)) m.emissionTexture = use(written, "emissiveTexture", Kind::Color);
   }
 
-  void alpha(const tinygltf::Material& from, Material& m) {
-    m.alphaCutoff = float(from.alphaCutoff);
-    m.masked = from.alphaMode == "MASK";
-    if (from.alphaMode != "BLEND") return;
+  void alpha(const Value* written, Material& m) {
+    const std::string mode = textOr(written, "alphaMode", "OPAQUE");
+    m.alphaCutoff = float(numberOr(written, "alphaCutoff", 0.5));
+    m.masked = mode == "MASK";
+    if (mode != "BLEND") return;
     c_.warnIfDiffuse(place_,
                      "alphaMode BLEND is drawn as MASK with a cutoff of 0.5, unless materials are full");
     m.masked = m.blended = true;
@@ -162,12 +153,12 @@ class MaterialBuilder {
   }
 
   void extensions(const Value* written, Material& m) {
-    m.ior = finite(numberOr(extensionOf(written, "KHR_materials_ior"), "ior", 1.5), "ior");
+    m.ior = finite(numberOr(extensionOf(written, "KHR_materials_ior"), "ior", 1.5), 1.5f, "ior");
     if (const Value* e = extensionOf(written, "KHR_materials_specular")) {
       m.specular = unitValue(numberOr(e, "specularFactor", 1), "specularFactor");
       const std::array<double, 3> color = threeOr(e, "specularColorFactor", 1);
       for (int i = 0; i < 3; ++i)
-        m.specularColor[i] = std::max(finite(color[size_t(i)], "specularColorFactor"), 0.0f);
+        m.specularColor[i] = std::max(finite(color[size_t(i)], 1, "specularColorFactor"), 0.0f);
       m.specularTexture = use(e, "specularTexture", Kind::Data);
       m.specularColorTexture = use(e, "specularColorTexture", Kind::Color);
     }
@@ -186,9 +177,6 @@ class MaterialBuilder {
                 "the coat follows the surface without a normal map");
     }
     m.unlit = extensionOf(written, "KHR_materials_unlit") != nullptr;
-    if (const Value* all = memberOf(written, "extensions"))
-      for (const json::Member& e : all->members)
-        if (!isSupported(e.key)) leftOut(e.key.substr(0, 80), "the material is shown without it");
   }
 
   // One warning for each thing that a model asks for, at the first material that does.
@@ -196,42 +184,36 @@ class MaterialBuilder {
     if (leftOut_.insert(what).second) c_.warn(place_, what + " is ignored: " + instead);
   }
 
-  // Textures that diffuse materials read, those of other colours, and those of data, which are linear.
-  enum class Kind : uint8_t { Diffuse, Color, Data };
-
-  // A model can be shown without what only full materials read.
-  bool readable(size_t image, Kind kind, const char* key) {
-    try {
-      textureOf(image, kind != Kind::Data);
-      return true;
-    } catch (const Error& e) {
-      c_.warn(place_, std::string(key) + " is ignored: " + e.diagnostics().front().message,
-              e.diagnostics().front().remedy);
-      return false;
-    }
-  }
+  // Colours and data, which are linear.
+  enum class Kind : uint8_t { Color, Data };
 
   // The texture that `object` names at `key`.
   TextureUse use(const Value* object, const char* key, Kind kind) {
     TextureUse u;
     const Value* info = memberOf(object, key);
     if (!info) return u;
-    const tinygltf::Texture& texture = c_.model.textures[size_t(info->find("index")->integer)];
-    if (texture.source < 0) {
+    const Value& texture = itemsOf(&c_.root, "textures")[size_t(indexIn(info, "index"))];
+    const int source = indexIn(&texture, "source"), sampler = indexIn(&texture, "sampler");
+    if (source < 0) {
       c_.warn(place_, std::string(key) + " names a texture without an image that can be read; it is ignored");
       return u;
     }
-    if (kind != Kind::Diffuse && !readable(size_t(texture.source), kind, key)) return u;
-    u.texture = textureOf(size_t(texture.source), kind != Kind::Data);
-    if (texture.sampler >= 0) {
-      u.wrapU = wrapOf(c_.model.samplers[size_t(texture.sampler)].wrapS);
-      u.wrapV = wrapOf(c_.model.samplers[size_t(texture.sampler)].wrapT);
+    // A model can be shown without an image.
+    if (!c_.attempt([&] { u.texture = textureOf(size_t(source), kind == Kind::Color); },
+                    place_ + " is shown without its " + key))
+      return u;
+    if (sampler >= 0) {
+      const Value& s = itemsOf(&c_.root, "samplers")[size_t(sampler)];
+      u.wrapU = wrapOf(indexIn(&s, "wrapS"));
+      u.wrapV = wrapOf(indexIn(&s, "wrapT"));
+      const int near = indexIn(&s, "magFilter");
+      u.nearest = isNearest(near >= 0 ? near : indexIn(&s, "minFilter"));
     }
     double texCoord = numberOr(info, "texCoord", 0);
     if (const Value* transform = extensionOf(info, "KHR_texture_transform")) {
-      u.transform = textureTransform(transform);
-      for (int i = 0; i < 3; ++i)
-        finite(double(u.transform[i].x + u.transform[i].y), "KHR_texture_transform");
+      const glm::mat3x2 wanted = textureTransform(transform);
+      const float sum = glm::dot(wanted[0] + wanted[1] + wanted[2], glm::vec2(1));
+      if (std::isfinite(finite(sum, sum, "KHR_texture_transform"))) u.transform = wanted;
       texCoord = numberOr(transform, "texCoord", texCoord);
     }
     const std::optional<uint32_t> set = texCoords_.add(int(texCoord));
@@ -262,10 +244,16 @@ class MaterialBuilder {
     return textures_[{image, color}] = uint32_t(c_.scene.textures.size() - 1);
   }
 
+  // Text of the uri of an image that lies in a file; empty if it does not.
+  static std::string fileUri(const Value& image) {
+    const std::string uri = textOr(&image, "uri", "");
+    return isDataUri(uri) ? std::string() : uri;
+  }
+
   std::string imageName(size_t index) const {
-    const tinygltf::Image& image = c_.model.images[index];
-    if (!image.uri.empty() && !isDataUri(image.uri)) return image.uri.substr(0, 200);
-    return image.name.empty() ? "images[" + std::to_string(index) + "]" : image.name;
+    const Value& image = images_[index];
+    if (const std::string uri = fileUri(image); !uri.empty()) return uri.substr(0, 200);
+    return textOr(&image, "name", "images[" + std::to_string(index) + "]");
   }
 
   std::string messageName(size_t index) const {
@@ -275,12 +263,12 @@ class MaterialBuilder {
   // Images that name the same file or the same part of a buffer are decoded once.
   void findAlike() {
     std::map<std::pair<std::string, int>, size_t> first;
-    for (size_t i = 0; i < c_.model.images.size(); ++i) {
-      const tinygltf::Image& image = c_.model.images[i];
-      std::string file = image.uri;
-      if (image.image.empty()) file = resolveUri(c_.source, image.uri).file.string();
-      const bool named = !file.empty() || image.bufferView >= 0;
-      firstAlike_.push_back(named ? first.emplace(std::pair(file, image.bufferView), i).first->second : i);
+    for (size_t i = 0; i < images_.size(); ++i) {
+      std::string file = fileUri(images_[i]);
+      if (!file.empty()) file = resolveUri(c_.source, file).file.string();
+      const int view = indexIn(&images_[i], "bufferView");
+      const bool named = !file.empty() || view >= 0;
+      firstAlike_.push_back(named ? first.emplace(std::pair(file, view), i).first->second : i);
     }
   }
 
@@ -288,8 +276,9 @@ class MaterialBuilder {
   void claimMemory() {
     constexpr uint64_t kBytes = 8;  // a pixel, in the scene and on the device
     std::set<size_t> used;
-    for (const tinygltf::Texture& texture : c_.model.textures)
-      if (texture.source >= 0) used.insert(firstAlike_[size_t(texture.source)]);
+    for (const Value& texture : itemsOf(&c_.root, "textures"))
+      if (const int source = indexIn(&texture, "source"); source >= 0)
+        used.insert(firstAlike_[size_t(source)]);
     uint64_t pixels = 0, bytes = 0;
     for (const size_t i : used) try {
         const std::span<const uint8_t> file = encoded(i);
@@ -308,10 +297,18 @@ class MaterialBuilder {
 
   // The bytes of the file; they are valid until the next call.
   std::span<const uint8_t> encoded(size_t index) {
-    const tinygltf::Image& image = c_.model.images[index];
-    if (!image.image.empty()) return image.image;
-    const ResolvedUri r = resolveUri(c_.source, image.uri);
-    if (!r.problem.empty()) throw Error(ExitCode::BadInput, messageName(index) + ": " + r.problem, r.remedy);
+    const Value& image = images_[index];
+    if (const int view = indexIn(&image, "bufferView"); view >= 0) return bytesOf(c_.model, view);
+    const std::string uri = textOr(&image, "uri", "");
+    if (uri.empty()) c_.fail(messageName(index), "the image cannot be read");
+    if (isDataUri(uri)) {
+      DataUri data = decodeDataUri(uri);
+      if (!data.problem.empty()) c_.fail(messageName(index), data.problem);
+      file_ = std::move(data.bytes);
+      return file_;
+    }
+    const ResolvedUri r = resolveUri(c_.source, uri);
+    if (!r.problem.empty()) c_.fail(messageName(index), r.problem, r.remedy);
     std::error_code ec;
     if (!std::filesystem::exists(r.file, ec))
       throw Error(ExitCode::BadInput, messageName(index) + ": " + whyMissing(r.file),
@@ -333,6 +330,7 @@ class MaterialBuilder {
   }
 
   Context& c_;
+  const std::vector<Value>& images_;
   std::vector<size_t> firstAlike_;  // for each image, the first one with the same content
   std::vector<uint8_t> file_;       // what encoded() has read
   std::map<std::pair<size_t, bool>, uint32_t> textures_;  // by image and whether it holds colours
@@ -345,7 +343,8 @@ class MaterialBuilder {
 
 void buildMaterials(Context& c) {
   MaterialBuilder builder(c);
-  for (size_t i = 0; i < c.model.materials.size(); ++i) c.scene.materials.push_back(builder.build(i));
+  for (size_t i = 0; i < itemsOf(&c.root, "materials").size(); ++i)
+    c.scene.materials.push_back(builder.build(i));
 }
 
 }  // namespace fovea::scene::gltf

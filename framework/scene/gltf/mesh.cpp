@@ -13,6 +13,7 @@
 namespace fovea::scene::gltf {
 namespace {
 
+const std::string kIgnored = "it is ignored";
 constexpr uint64_t kBytesOfVertex = 64;  // position, normal, texture coordinates, and as much for indices
 
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -65,6 +66,7 @@ class MeshBuilder {
 
   size_t countOf(int accessor) const { return c_.model.accessors[size_t(accessor)].count; }
 
+  // For attributes without which a mesh can be shown.
   void checkCount(int accessor, size_t count, const std::string& path) const {
     if (countOf(accessor) != count)
       c_.fail(path, "has " + std::to_string(countOf(accessor)) + " elements, POSITION has " +
@@ -159,21 +161,16 @@ class MeshBuilder {
     const auto found = from.attributes.find(name);
     if (found == from.attributes.end()) return uvs;
     const std::string path = accessorPath(place, name, found->second);
-    checkCount(found->second, count, path);
-    const std::vector<float> v = readFloats(c_, found->second, 2, path);
-    for (size_t i = 0; i < count; ++i) {
-      const glm::vec2 uv = glm::make_vec2(&v[2 * i]);
-      uvs[i] = std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f);
-    }
+    const auto read = [&] {
+      checkCount(found->second, count, path);
+      const std::vector<float> v = readFloats(c_, found->second, 2, path);
+      for (size_t i = 0; i < count; ++i) {
+        const glm::vec2 uv = glm::make_vec2(&v[2 * i]);
+        uvs[i] = std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f);
+      }
+    };
+    c_.attempt(read, "it is ignored, and one point of textures covers the primitive");
     return uvs;
-  }
-
-  // For attributes without which a mesh can still be shown.
-  bool fits(int accessor, size_t count, const std::string& path) const {
-    if (countOf(accessor) == count) return true;
-    c_.warn(path, "is ignored: it has " + std::to_string(countOf(accessor)) + " elements, POSITION has " +
-                      std::to_string(count));
-    return false;
   }
 
   // Linear RGB or RGBA. What is not finite reads as 1.
@@ -181,13 +178,16 @@ class MeshBuilder {
     const auto found = from.attributes.find("COLOR_0");
     if (found == from.attributes.end()) return;
     const std::string path = accessorPath(place, "COLOR_0", found->second);
-    if (!fits(found->second, out.positions.size(), path)) return;
-    const size_t components = c_.model.accessors[size_t(found->second)].type == TINYGLTF_TYPE_VEC3 ? 3 : 4;
-    const std::vector<float> v = readFloats(c_, found->second, int(components), path);
-    out.colors.assign(out.positions.size(), glm::vec4(1.0f));
-    for (size_t i = 0; i < v.size(); ++i)
-      if (std::isfinite(v[i])) out.colors[i / components][int(i % components)] = std::max(v[i], 0.0f);
-    colored_.insert(mesh_);
+    const auto read = [&] {
+      checkCount(found->second, out.positions.size(), path);
+      const size_t components = c_.model.accessors[size_t(found->second)].type == TINYGLTF_TYPE_VEC3 ? 3 : 4;
+      const std::vector<float> v = readFloats(c_, found->second, int(components), path);
+      out.colors.assign(out.positions.size(), glm::vec4(1.0f));
+      for (size_t i = 0; i < v.size(); ++i)
+        if (std::isfinite(v[i])) out.colors[i / components][int(i % components)] = std::max(v[i], 0.0f);
+      colored_.insert(mesh_);
+    };
+    c_.attempt(read, kIgnored);
   }
 
   // Only where a normal map needs them, and only beside normals of the model (glTF 2.0, 3.7.2.1).
@@ -196,33 +196,91 @@ class MeshBuilder {
     if (found == from.attributes.end() || !from.attributes.contains("NORMAL")) return;
     if (from.material < 0 || !c_.scene.materials[size_t(from.material)].normalTexture) return;
     const std::string path = accessorPath(place, "TANGENT", found->second);
-    if (!fits(found->second, out.positions.size(), path)) return;
-    const std::vector<float> v = readFloats(c_, found->second, 4, path);
-    for (size_t i = 0; i < out.positions.size(); ++i) out.tangents.push_back(glm::make_vec4(&v[4 * i]));
+    const auto read = [&] {
+      checkCount(found->second, out.positions.size(), path);
+      const std::vector<float> v = readFloats(c_, found->second, 4, path);
+      for (size_t i = 0; i < out.positions.size(); ++i) out.tangents.push_back(glm::make_vec4(&v[4 * i]));
+    };
+    c_.attempt(read, kIgnored);
   }
 
-  // Four joints per vertex; further sets are rare and carry little weight.
+  // All sets of four joints per vertex.
   void readSkin(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
-    const auto joints = from.attributes.find("JOINTS_0"), weights = from.attributes.find("WEIGHTS_0");
-    if (joints == from.attributes.end() || weights == from.attributes.end()) return;
-    const size_t count = out.positions.size();
-    const std::string path = accessorPath(place, "JOINTS_0", joints->second);
-    const std::string weightPath = accessorPath(place, "WEIGHTS_0", weights->second);
-    checkCount(joints->second, count, path);
-    checkCount(weights->second, count, weightPath);
-    const std::vector<float> j = readFloats(c_, joints->second, 4, path);
-    const std::vector<float> w = readFloats(c_, weights->second, 4, weightPath);
-    out.joints.assign(count, glm::u16vec4(0));
-    out.weights.assign(count, glm::vec4(1, 0, 0, 0));
-    for (size_t i = 0; i < count; ++i) {
-      const glm::vec4 weight = glm::max(glm::make_vec4(&w[4 * i]), 0.0f);
-      const float sum = weight.x + weight.y + weight.z + weight.w;
-      if (sum > 0.0f && std::isfinite(sum)) out.weights[i] = weight / sum;
-      // The index of a joint without weight does not matter.
-      for (int k = 0; k < 4; ++k)
-        if (out.weights[i][k] > 0.0f)
-          out.joints[i][k] = uint16_t(std::clamp(j[4 * i + size_t(k)], 0.0f, 65535.0f));
+    const auto read = [&] {
+      for (int set = 0;; ++set) {
+        const auto joints = from.attributes.find("JOINTS_" + std::to_string(set)),
+                   weights = from.attributes.find("WEIGHTS_" + std::to_string(set));
+        if (joints == from.attributes.end() || weights == from.attributes.end()) return;
+        readJoints({joints->first, joints->second}, {weights->first, weights->second}, place, out);
+      }
+    };
+    if (!c_.attempt(read, "the primitive is shown unskinned")) {
+      out.joints.clear();
+      out.weights.clear();
     }
+    if (!out.joints.empty()) normalizeWeights(place, out);
+  }
+
+  using NamedAccessor = std::pair<std::string, int>;
+  void readJoints(const NamedAccessor& joints, const NamedAccessor& weights, const std::string& place,
+                  Primitive& out) {
+    const size_t count = out.positions.size();
+    const std::string path = accessorPath(place, joints.first, joints.second);
+    const std::string weightPath = accessorPath(place, weights.first, weights.second);
+    checkCount(joints.second, count, path);
+    checkCount(weights.second, count, weightPath);
+    const std::vector<float> j = readFloats(c_, joints.second, 4, path);
+    const std::vector<float> w = readFloats(c_, weights.second, 4, weightPath);
+    for (size_t i = 0; i < count; ++i) {
+      const glm::vec4 weight = glm::make_vec4(&w[4 * i]);
+      glm::u16vec4 joint(0);
+      glm::vec4 kept(0);
+      for (int k = 0; k < 4; ++k) {
+        if (!(weight[k] > 0.0f) || !std::isfinite(weight[k])) continue;  // its joint does not matter
+        kept[k] = weight[k];
+        joint[k] = uint16_t(std::clamp(j[4 * i + size_t(k)], 0.0f, 65535.0f));
+      }
+      out.joints.push_back(joint);
+      out.weights.push_back(kept);
+    }
+  }
+
+  // The weights of a vertex get the sum 1; without any, it follows the first joint. Sets without weights are left out,
+  // and of a cage, which has one set, all joints but the four with the largest weights.
+  void normalizeWeights(const std::string& place, Primitive& out) {
+    const size_t count = out.positions.size();
+    const auto weighs = [](glm::vec4 w) { return w != glm::vec4(0.0f); };
+    while (out.weights.size() > count &&
+           std::none_of(out.weights.end() - long(count), out.weights.end(), weighs)) {
+      out.weights.resize(out.weights.size() - count);
+      out.joints.resize(out.weights.size());
+    }
+    if (isCage_ && out.joints.size() > count) keepHeaviest(place, out);
+    for (size_t i = 0; i < count; ++i) {
+      float sum = 0;
+      for (size_t e = i; e < out.weights.size(); e += count) sum += glm::dot(out.weights[e], glm::vec4(1.0f));
+      for (size_t e = i; e < out.weights.size(); e += count) out.weights[e] /= sum > 0.0f ? sum : 1.0f;
+      if (!(sum > 0.0f)) out.weights[i] = {1, 0, 0, 0};
+    }
+  }
+
+  void keepHeaviest(const std::string& place, Primitive& out) {
+    c_.warn(place,
+            "the points of a cage follow at most four joints: those with the largest weights are kept");
+    const size_t count = out.positions.size();
+    for (size_t i = 0; i < count; ++i) {
+      std::vector<std::pair<float, uint16_t>> all;
+      for (size_t e = i; e < out.weights.size(); e += count)
+        for (int k = 0; k < 4; ++k) all.emplace_back(out.weights[e][k], out.joints[e][k]);
+      std::stable_sort(all.begin(), all.end(),
+                       [](const auto& a, const auto& b) { return a.first > b.first; });
+      for (int k = 0; k < 4; ++k) {
+        out.weights[i][k] = all[size_t(k)].first;
+        out.joints[i][k] = all[size_t(k)].second;
+      }
+    }
+    out.weights.resize(count);
+    out.joints.resize(count);
   }
 
   std::vector<glm::vec3> displacements(const std::map<std::string, int>& target, const char* attribute,
@@ -231,16 +289,18 @@ class MeshBuilder {
     const auto found = target.find(attribute);
     if (found == target.end()) return list;
     const std::string path = accessorPath(place, attribute, found->second);
-    checkCount(found->second, count, path);
     c_.vertices += count;
     checkSize(place);
-    const std::vector<float> v = readFloats(c_, found->second, 3, path);
-    list.resize(count);
-    for (size_t i = 0; i < count; ++i) {
-      list[i] = glm::make_vec3(&v[3 * i]);
-      if (!isFinite(list[i]))
-        c_.fail(path, "vertex " + std::to_string(i) + " is displaced by what is not finite");
-    }
+    const auto read = [&] {
+      checkCount(found->second, count, path);
+      const std::vector<float> v = readFloats(c_, found->second, 3, path);
+      for (size_t i = 0; i < count; ++i) {
+        list.push_back(glm::make_vec3(&v[3 * i]));
+        if (!isFinite(list[i]))
+          c_.fail(path, "vertex " + std::to_string(i) + " is displaced by what is not finite");
+      }
+    };
+    if (!c_.attempt(read, "the displacements are ignored")) list.clear();
     return list;
   }
 
@@ -254,14 +314,15 @@ class MeshBuilder {
 
   void readWeights(const tinygltf::Mesh& from, Mesh& mesh) {
     size_t targets = 0;
-    for (const Primitive& p : mesh.primitives) {
-      targets = std::max(targets, p.targets.size());
-      if (p.targets.size() != mesh.primitives[0].targets.size())
-        c_.fail(mesh_, "its primitives have different numbers of morph targets");
+    for (const Primitive& p : mesh.primitives) targets = std::max(targets, p.targets.size());
+    const auto differs = [&](const Primitive& p) { return p.targets.size() != targets; };
+    if (std::ranges::any_of(mesh.primitives, differs)) {
+      c_.warn(mesh_, "its primitives have different numbers of morph targets; missing ones displace nothing");
+      for (Primitive& p : mesh.primitives) p.targets.resize(targets);
     }
     if (!from.weights.empty() && from.weights.size() != targets && !mesh.primitives.empty())
-      c_.fail(mesh_ + ".weights", std::to_string(from.weights.size()) + " weights for " +
-                                      std::to_string(targets) + " morph targets");
+      return c_.warn(mesh_ + ".weights", std::to_string(from.weights.size()) + " weights for " +
+                                             std::to_string(targets) + " morph targets: they are ignored");
     for (size_t i = 0; i < std::min(targets, from.weights.size()); ++i)
       mesh.weights.push_back(float(from.weights[i]));
   }
@@ -303,8 +364,12 @@ class MeshBuilder {
     const auto found = from.attributes.find("NORMAL");
     if (found == from.attributes.end()) return flatNormals(p);
     const std::string path = accessorPath(place, "NORMAL", found->second);
-    checkCount(found->second, p.positions.size(), path);
-    const std::vector<float> v = readFloats(c_, found->second, 3, path);
+    std::vector<float> v;
+    const auto read = [&] {
+      checkCount(found->second, p.positions.size(), path);
+      v = readFloats(c_, found->second, 3, path);
+    };
+    if (!c_.attempt(read, "it is ignored, and the primitive is flat-shaded")) return flatNormals(p);
     p.normals.resize(p.positions.size());
     std::vector<bool> bad(p.positions.size());
     for (size_t i = 0; i < p.normals.size(); ++i) {
@@ -331,13 +396,15 @@ class MeshBuilder {
     c_.vertices += p.indices.size();
     checkSize(mesh_);
     c_.vertices -= p.indices.size();
+    const size_t count = p.positions.size();
     std::vector<uint32_t> vertices = std::move(p.indices);
     const auto spread = [&](auto& list) {
       auto all = std::move(list);
       list.clear();
       if (all.empty()) return;
-      list.reserve(vertices.size());
-      for (uint32_t v : vertices) list.push_back(all[v]);
+      list.reserve(all.size() / count * vertices.size());
+      for (size_t set = 0; set < all.size(); set += count)
+        for (uint32_t v : vertices) list.push_back(all[set + v]);
     };
     p.normals.clear();
     p.indices.clear();
@@ -380,8 +447,9 @@ void buildMeshes(Context& c) {
     c.warn("meshes", std::to_string(c.badNormals) +
                          " normals were zero or not finite; they now follow their triangles");
   if (!builder.colored_.empty())
-    c.warnIfDiffuse(*builder.colored_.begin(), "diffuse materials ignore the vertex colours (COLOR_0) of " +
-                                                   std::to_string(builder.colored_.size()) + " mesh(es)");
+    c.warnIfDiffuse(*builder.colored_.begin(),
+                    "diffuse materials ignore the vertex colours (COLOR_0), apart from their alpha, of " +
+                        std::to_string(builder.colored_.size()) + " mesh(es)");
 }
 
 }  // namespace fovea::scene::gltf

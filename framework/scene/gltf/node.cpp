@@ -131,31 +131,33 @@ class NodeBuilder {
     const Mesh& mesh = c_.scene.meshes[node.mesh];
     const size_t targets = morphTargets(mesh);
     if (n.weights.size() != targets && (mesh.cage || !mesh.primitives.empty()))
-      c_.fail(nameOf("nodes", from, n.name) + ".weights", std::to_string(n.weights.size()) + " weights for " +
-                                                              std::to_string(targets) + " morph targets");
+      return c_.warn(nameOf("nodes", from, n.name) + ".weights",
+                     std::to_string(n.weights.size()) + " weights for " + std::to_string(targets) +
+                         " morph targets: they are ignored");
     for (double w : n.weights) node.weights.push_back(float(w));
   }
 
   glm::quat rotationOf(const tinygltf::Node& n, size_t from) const {
     const glm::quat q(float(n.rotation[3]), float(n.rotation[0]), float(n.rotation[1]), float(n.rotation[2]));
     const float length = glm::length(q);
-    if (length > 1e-6f && std::isfinite(length)) return q / length;
+    if (length > 1e-6f && std::isfinite(length)) {
+      if (std::abs(length - 1.0f) > 0.01f)
+        c_.warn(nameOf("nodes", from, n.name), "its rotation is not a unit quaternion and is normalised");
+      return q / length;
+    }
     c_.warn(nameOf("nodes", from, n.name), "its rotation is not a unit quaternion and is ignored");
     return glm::quat(1, 0, 0, 0);
   }
 
   void attach(size_t from) {
-    const tinygltf::Node& n = c_.model.nodes[from];
     Node& node = c_.scene.nodes[nodeOf_[from]];
     const glm::mat4& world = world_[nodeOf_[from]];
-    if (n.camera >= 0) node.camera = camera(size_t(n.camera), world);
-    const auto extension = n.extensions.find("KHR_lights_punctual");
-    if (extension == n.extensions.end() || !extension->second.Has("light")) return;
-    const int light = extension->second.Get("light").GetNumberAsInt();
-    if (light < 0 || size_t(light) >= c_.model.lights.size())
-      c_.fail(nameOf("nodes", from, n.name), "names no light");
+    const json::Value& written = itemsOf(&c_.root, "nodes")[from];
+    if (const int index = indexIn(&written, "camera"); index >= 0) node.camera = camera(size_t(index), world);
+    const int light = indexIn(extensionOf(&written, kLights), "light");
+    if (light < 0) return;
     node.light = uint32_t(c_.scene.lights.size());
-    c_.scene.lights.push_back(lightAt(c_.model.lights[size_t(light)], size_t(light), world));
+    c_.scene.lights.push_back(lightAt(size_t(light), world));
   }
 
   uint32_t camera(size_t index, const glm::mat4& world) {
@@ -166,19 +168,23 @@ class NodeBuilder {
     return uint32_t(c_.scene.cameras.size() - 1);
   }
 
-  Light lightAt(const tinygltf::Light& from, size_t index, const glm::mat4& world) {
+  Light lightAt(size_t index, const glm::mat4& world) {
+    const json::Value& from = itemsOf(extensionOf(&c_.root, kLights), "lights")[index];
+    const std::string name = textOr(&from, "name", ""), type = textOr(&from, "type", "point");
     Light light;
-    light.name = from.name.empty() ? "light " + std::to_string(index) : from.name;
-    light.type = from.type == "directional" ? LightType::Directional
-                 : from.type == "spot"      ? LightType::Spot
-                                            : LightType::Point;
-    if (from.color.size() == 3)
-      light.color = glm::max(glm::vec3(from.color[0], from.color[1], from.color[2]), 0.0f);
-    light.intensity = float(from.intensity);
-    light.range = float(from.range);
+    light.name = name.empty() ? "light " + std::to_string(index) : name;
+    light.type = type == "directional" ? LightType::Directional
+                 : type == "spot"      ? LightType::Spot
+                                       : LightType::Point;
+    const std::array<double, 3> color = threeOr(&from, "color", 1);
+    light.color = glm::max(glm::vec3(color[0], color[1], color[2]), 0.0f);
+    light.intensity = float(numberOr(&from, "intensity", 1));
+    light.range = float(numberOr(&from, "range", 0));
     if (light.type == LightType::Spot) {
-      light.innerConeAngle = float(from.spot.innerConeAngle);
-      light.outerConeAngle = float(from.spot.outerConeAngle);
+      constexpr double kRightAngle = 1.5707963267948966, kDefaultOuter = 0.7853981633974483;
+      const json::Value* spot = from.find("spot");
+      light.outerConeAngle = float(std::min(numberOr(spot, "outerConeAngle", kDefaultOuter), kRightAngle));
+      light.innerConeAngle = std::min(float(numberOr(spot, "innerConeAngle", 0)), light.outerConeAngle);
     }
     light.position = glm::vec3(world[3]);
     // The light points along the node's -Z; the node's scale does not affect it (KHR_lights_punctual).
@@ -186,6 +192,7 @@ class NodeBuilder {
     return light;
   }
 
+  static constexpr std::string_view kLights = "KHR_lights_punctual";
   Context& c_;
   std::vector<uint32_t>& nodeOf_;
   std::vector<Camera> cameras_;  // of the file

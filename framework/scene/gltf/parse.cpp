@@ -1,5 +1,5 @@
-// The only file that calls tinygltf, with callbacks that can read nothing but the buffers that
-// `checkDocument` has seen.
+// The only file that calls tinygltf, which reads the lists of accessors, buffer views, meshes, nodes and scenes from a
+// document that is written for it, and can open no file. Buffers are read here.
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -9,72 +9,22 @@
 namespace fovea::scene::gltf {
 namespace {
 
-// What the callbacks may read: the path that tinygltf will request -> the size that it must have.
-struct Allowed {
-  std::map<std::string, uint64_t> files;
-};
+using json::Value;
 
-bool fileExists(const std::string& name, void* user) {
-  return static_cast<Allowed*>(user)->files.count(name) > 0;
-}
+bool fileExists(const std::string&, void*) { return false; }
 
-std::string expandPath(const std::string& name, void*) { return name; }  // no ~, no variables, no wordexp
+std::string expandPath(const std::string& name, void*) { return name; }
 
-bool readWholeFile(std::vector<unsigned char>* out, std::string* err, const std::string& name, void* user) {
-  const auto& files = static_cast<Allowed*>(user)->files;
-  const auto found = files.find(name);
-  if (found == files.end()) {
-    if (err) *err = "refused";
-    return false;
-  }
-  try {
-    *out = readFile(name);
-  } catch (const Error& e) {
-    if (err) *err = e.what();
-    return false;
-  }
-  if (out->size() < found->second) {
-    if (err)
-      *err = "the file has " + std::to_string(out->size()) + " bytes, the buffer needs " +
-             std::to_string(found->second);
-    return false;
-  }
-  out->resize(found->second);  // a longer file is legal, but tinygltf requires equality
-  return true;
+bool readNothing(std::vector<unsigned char>*, std::string* err, const std::string&, void*) {
+  if (err) *err = "refused";
+  return false;
 }
 
 bool writeNothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
   return false;
 }
 
-// Keeps the encoded bytes; buildMaterials decodes the images that are used.
-bool keepEncoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
-                 const unsigned char* bytes, int size, void*) {
-  image->as_is = true;
-  image->image.assign(bytes, bytes + size);
-  return true;
-}
-
-Allowed allowedFiles(const Source& source, const json::Value& root) {
-  Allowed allowed;
-  const json::Value* buffers = root.find("buffers");
-  if (!buffers) return allowed;
-  for (const json::Value& b : buffers->items) {
-    const json::Value* uri = b.find("uri");
-    if (!uri || isDataUri(uri->string) || isPlaceholder(b)) continue;
-    // Two buffers may use different lengths of one file. As tinygltf requires exact sizes, this is refused.
-    const std::string name = source.folder.string() + "/" + resolveUri(source, uri->string).decoded;
-    const uint64_t size = uint64_t(b.find("byteLength")->integer);
-    const auto [at, added] = allowed.files.emplace(name, size);
-    if (!added && at->second != size)
-      throw Error(ExitCode::BadInput,
-                  source.name + ": two buffers name the file " + name + " with different lengths",
-                  "give them the same byteLength");
-  }
-  return allowed;
-}
-
-// Shortens messages, because tinygltf repeats whole data URIs in them.
+// Shortens messages, because tinygltf repeats whole objects in them.
 std::string shorten(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   constexpr size_t kLimit = 400;
@@ -84,117 +34,106 @@ std::string shorten(std::string text) {
   return text.empty() ? "the file cannot be read as glTF" : text;
 }
 
-bool isPrimitiveToDecode(const json::Value& primitive) {
-  return isSupported(kDraco) && extensionOf(&primitive, kDraco);
+// A copy without extensions and extras, which are read from the document itself, in which whole numbers are written
+// without a fraction and without an exponent, because tinygltf knows no others.
+Value plain(const Value& from) {
+  Value to;
+  to.type = from.type == Value::Type::Real && from.isInt() ? Value::Type::Int : from.type;
+  to.boolean = from.boolean;
+  to.string = from.string;
+  to.integer = from.integer;
+  to.real = from.real;
+  for (const Value& item : from.items) to.items.push_back(plain(item));
+  for (const json::Member& m : from.members)
+    if (m.key != "extensions" && m.key != "extras") to.members.push_back({m.key, plain(m.value), {}});
+  return to;
 }
 
-void leaveOutIndices(json::Value& primitive) {
-  if (isPrimitiveToDecode(primitive))
-    std::erase_if(primitive.members, [](const json::Member& m) { return m.key == "indices"; });
+// tinygltf insists on the data of indices, which compressed primitives do not have yet.
+void leaveOutCompressedIndices(const Value& written, Value& meshes) {
+  for (size_t m = 0; isSupported(kDraco) && m < meshes.items.size(); ++m)
+    for (json::Member& list : meshes.items[m].members)
+      for (size_t i = 0; list.key == "primitives" && i < list.value.items.size(); ++i)
+        if (extensionOf(&written.items[m].find("primitives")->items[i], kDraco))
+          std::erase_if(list.value.items[i].members,
+                        [](const json::Member& p) { return p.key == "indices"; });
 }
 
-// The cameras are read without tinygltf, which refuses a file in which one of them lacks a number.
-bool isComplete(const json::Value& camera) {
-  const json::Value* type = camera.find("type");
-  if (!type) return false;
-  const json::Value* lens = camera.find(type->string);
-  const auto has = [&](const char* key) { return lens && lens->find(key); };
-  return isOrthographic(camera) ? has("xmag") && has("ymag") && has("zfar") && has("znear")
-                                : has("yfov") && has("znear");
-}
-
-bool needsChange(const json::Value& root) {
-  bool found = false;
-  if (const json::Value* cameras = root.find("cameras"))
-    found = !std::all_of(cameras->items.begin(), cameras->items.end(), isComplete);
-  if (const json::Value* buffers = root.find("buffers"))
-    for (const json::Value& b : buffers->items) found = found || isPlaceholder(b);
-  if (const json::Value* meshes = root.find("meshes"))
-    for (const json::Value& mesh : meshes->items)
-      for (const json::Value& p : mesh.find("primitives")->items) found = found || isPrimitiveToDecode(p);
-  return found;
-}
-
-// The document without cameras and without what is still to be decoded, because tinygltf insists on the data of buffers
-// and indices: each placeholder has one byte, and primitives have no indices.
-std::string changed(json::Value root) {
-  static const json::Value kOneByte =
-      json::parse(R"({"byteLength":1,"uri":"data:application/octet-stream;base64,AA=="})", "placeholder");
-  std::erase_if(root.members, [](const json::Member& m) { return m.key == "cameras"; });
-  for (json::Member& list : root.members) {
-    if (list.key == "buffers")
-      std::replace_if(list.value.items.begin(), list.value.items.end(), isPlaceholder, kOneByte);
-    if (list.key != "meshes") continue;
-    for (json::Value& mesh : list.value.items)
-      for (json::Member& part : mesh.members)
-        if (part.key == "primitives")
-          std::for_each(part.value.items.begin(), part.value.items.end(), leaveOutIndices);
+// What tinygltf is to read of a document. It insists on the data of buffers, too: each has one byte.
+std::string documentOf(const Value& root) {
+  Value document = json::parse(R"({"asset":{"version":"2.0"}})", "glTF");
+  const Value buffer =
+      json::parse(R"({"byteLength":1,"uri":"data:application/octet-stream;base64,AA=="})", "glTF");
+  const Value nothing = json::parse(R"({"componentType":5126,"count":0,"type":"SCALAR"})", "glTF");
+  for (const json::Member& m : root.members) {
+    if (m.key == "buffers") {
+      Value buffers;
+      buffers.type = Value::Type::Array;
+      buffers.items.assign(m.value.items.size(), buffer);
+      document.members.push_back({m.key, std::move(buffers), {}});
+    }
+    for (const char* key : {"accessors", "bufferViews", "meshes", "nodes", "scenes", "scene"})
+      if (m.key == key) document.members.push_back({m.key, plain(m.value), {}});
+    if (m.key == "accessors")  // without a count, it is left out
+      for (size_t i = 0; i < m.value.items.size(); ++i)
+        if (!m.value.items[i].find("count")) document.members.back().value.items[i] = nothing;
+    if (m.key == "meshes") leaveOutCompressedIndices(m.value, document.members.back().value);
   }
-  return json::print(root);
+  return json::print(document);
 }
 
-void append(std::vector<uint8_t>& to, uint32_t value) {
-  for (int i = 0; i < 4; ++i) to.push_back(uint8_t(value >> 8 * i));
-}
-
-// Appends a chunk of a GLB file (glTF 2.0, 4.4.3).
-void append(std::vector<uint8_t>& to, std::string_view type, std::span<const uint8_t> content,
-            uint8_t padding) {
-  const size_t size = (content.size() + 3) / 4 * 4;
-  append(to, uint32_t(size));
-  to.insert(to.end(), type.begin(), type.end());
-  to.insert(to.end(), content.begin(), content.end());
-  to.insert(to.end(), size - content.size(), padding);
-}
-
-// A GLB file made of a document and the binary chunk of a source.
-std::vector<uint8_t> glbOf(const std::string& document, const Source& source) {
-  std::vector<uint8_t> glb = {'g', 'l', 'T', 'F', 2, 0, 0, 0, 0, 0, 0, 0};
-  append(glb, "JSON", {reinterpret_cast<const uint8_t*>(document.data()), document.size()}, ' ');
-  if (!source.chunk.empty()) append(glb, std::string_view("BIN\0", 4), source.chunk, 0);
-  std::vector<uint8_t> size;
-  append(size, uint32_t(glb.size()));
-  std::copy(size.begin(), size.end(), glb.begin() + 8);
-  return glb;
-}
-
-bool load(const Source& source, const json::Value& root, tinygltf::TinyGLTF& loader, tinygltf::Model& model,
-          std::string& error) {
-  std::string warning;
-  const std::string folder = source.folder.string();
-  std::string document;
-  std::vector<uint8_t> glb;
-  std::span<const uint8_t> file = source.bytes;
-  std::string_view text = source.json;
-  if (needsChange(root)) {
-    text = document = changed(root);
-    if (source.binary) file = glb = glbOf(document, source);
+// The content of a buffer; files and data uris may be longer than it.
+std::vector<uint8_t> bytesOfBuffer(const Source& source, const Value& buffer, const std::string& place) {
+  if (isPlaceholder(buffer)) return {0};
+  const size_t size = size_t(buffer.find("byteLength")->integer);
+  const Value* uri = buffer.find("uri");
+  if (!uri) return {source.chunk.begin(), source.chunk.begin() + std::ptrdiff_t(size)};
+  const auto fail = [&](const std::string& message, const char* remedy) {
+    throw Error(ExitCode::BadInput,
+                {{Severity::Error, uri->where.location(), place + ".uri", message, remedy}});
+  };
+  std::vector<uint8_t> bytes;
+  std::string name = "the data uri";
+  if (isDataUri(uri->string)) {
+    DataUri data = decodeDataUri(uri->string);
+    if (!data.problem.empty()) fail(data.problem, "export the model again");
+    bytes = std::move(data.bytes);
+  } else {
+    const std::filesystem::path file = resolveUri(source, uri->string).file;
+    name = "the file " + file.string();
+    bytes = readFile(file);
   }
-  if (source.binary)
-    return loader.LoadBinaryFromMemory(&model, &error, &warning, file.data(), unsigned(file.size()), folder);
-  return loader.LoadASCIIFromString(&model, &error, &warning, text.data(), unsigned(text.size()), folder);
+  if (bytes.size() < size)
+    fail(name + " has " + std::to_string(bytes.size()) + " bytes, the buffer needs " + std::to_string(size),
+         "the model is cut short; export or copy it again");
+  bytes.resize(size);
+  return bytes;
 }
 
 }  // namespace
 
-void parseModel(const Source& source, const json::Value& root, tinygltf::Model& model) {
-  Allowed allowed = allowedFiles(source, root);
+void parseModel(const Source& source, const Value& root, tinygltf::Model& model) {
   tinygltf::TinyGLTF loader;
-  loader.SetFsCallbacks({&fileExists, &expandPath, &readWholeFile, &writeNothing, &allowed});
-  loader.SetImageLoader(&keepEncoded, nullptr);
+  loader.SetFsCallbacks({&fileExists, &expandPath, &readNothing, &writeNothing, nullptr});
   std::string error;
   bool ok = false;
   try {
-    ok = load(source, root, loader, model, error);
+    const std::string document = documentOf(root);
+    std::string warning;
+    ok = loader.LoadASCIIFromString(&model, &error, &warning, document.data(), unsigned(document.size()), "");
+    for (size_t i = 0; ok && i < model.buffers.size(); ++i)
+      model.buffers[i].data = bytesOfBuffer(source, root.find("buffers")->items[i], nameOf("buffers", i, ""));
   } catch (const std::bad_alloc&) {
     throw Error(ExitCode::OutOfMemory, source.name + ": not enough memory for the model's buffers");
+  } catch (const Error&) {
+    throw;
   } catch (const std::exception& e) {
     error = e.what();
   }
   if (!ok) throw Error(ExitCode::BadInput, source.name + ": " + shorten(error));
   // The lists must have the lengths that `checkDocument` checked every index against.
   const auto same = [&](const char* key, size_t size) {
-    const json::Value* list = root.find(key);
+    const Value* list = root.find(key);
     if ((list ? list->items.size() : 0) != size)
       throw Error(ExitCode::BadInput,
                   source.name + ": `" + key + "` was only partly understood: " + shorten(error));
@@ -202,14 +141,9 @@ void parseModel(const Source& source, const json::Value& root, tinygltf::Model& 
   same("accessors", model.accessors.size());
   same("bufferViews", model.bufferViews.size());
   same("buffers", model.buffers.size());
-  same("images", model.images.size());
-  same("samplers", model.samplers.size());
-  same("textures", model.textures.size());
-  same("materials", model.materials.size());
   same("meshes", model.meshes.size());
   same("nodes", model.nodes.size());
   same("scenes", model.scenes.size());
-  same("skins", model.skins.size());
 }
 
 }  // namespace fovea::scene::gltf
