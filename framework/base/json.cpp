@@ -126,10 +126,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
       return at < text_.size() && any.find(text_[at]) != std::string_view::npos;
     };
     if (is("-")) ++at;
-    if (is("0"))
-      ++at;
-    else
-      digits();
+    is("0") ? void(++at) : digits();
     if (is(".")) {
       ++at;
       digits();
@@ -224,11 +221,9 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
 }  // namespace
 
 void Value::setReal(double number) {
-  constexpr double kBeyondInteger = 9223372036854775808.0;  // 2^63
   type = Type::Real;
   real = number;
-  integer =
-      std::abs(number) < kBeyondInteger && number == std::trunc(number) ? static_cast<int64_t>(number) : 0;
+  integer = std::abs(number) < 0x1p63 && number == std::trunc(number) ? static_cast<int64_t>(number) : 0;
 }
 
 std::string Value::describe() const {
