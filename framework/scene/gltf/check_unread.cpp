@@ -90,11 +90,12 @@ class UnreadReporter : DocumentReader {
       once(e.key, e.value, path, e.key.substr(0, 80) + " is ignored: " + effectOf(e.key));
     }
     if (&v == &root_) return;
-    for (size_t i = 0; i < v.items.size(); ++i)
-      if (path.find('[') != std::string::npos || path.find('.') != std::string::npos)
-        visit(v.items[i], at(path, i));
+    const bool isList = path.find_first_of("[.") == std::string::npos;  // whose items run() visits
+    for (size_t i = 0; i < v.items.size() && !isList; ++i)
+      if (v.items[i].isObject()) visit(v.items[i], at(path, i));
     for (const json::Member& m : v.members)
-      if (m.key != "extensions" && m.key != "extras") visit(m.value, json::joinPath(path, m.key));
+      if (m.key != "extensions" && m.key != "extras" && (m.value.isObject() || m.value.isArray()))
+        visit(m.value, json::joinPath(path, m.key));
   }
 
   // Extensions that are only in the list of those that are used.
