@@ -301,6 +301,17 @@ TEST(FirstView, EmissiveThingsStandOnAFloorThatIsLit) {
   EXPECT_EQ(scene::addFirstView(lamp).light, "");
 }
 
+// The light of an emissive lamp in a box is the author's; the floor outside, which it does not reach, is left out.
+TEST(FirstView, AnEmissiveLampThatLightsTheModelStaysAlone) {
+  scene::Scene s = box({1, 0.01f, 1});
+  const uint32_t emissive = addMaterial(s, glm::vec3(0)), black = addMaterial(s, glm::vec3(0));
+  s.materials[emissive].emission = glm::vec3(5);
+  s.materials[black].doubleSided = true;
+  addQuad(s, emissive, {-0.3f, 1.2f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f});  // faces the plate
+  addQuad(s, black, {-0.4f, 1.21f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f});
+  EXPECT_EQ(scene::addFirstView(s).light, "");
+}
+
 // A plate under a spot light that does not reach past its edges: the floor would only be a black disc.
 TEST(FirstView, NoFloorWhereTheLampsOfTheModelDoNotReach) {
   scene::Scene s = box({1, 0.01f, 1});

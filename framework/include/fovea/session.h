@@ -41,7 +41,7 @@ struct SessionOptions {
 struct FrameOptions {
   uint64_t index = 0;                   // FrameResult::frame; random numbers and jitter follow from it
   std::optional<double> time;           // of the scene, in seconds, at least 0; not set: index / frameRate
-  std::optional<scene::Camera> camera;  // world space, metres and radians
+  std::optional<scene::Camera> camera;  // world space, relative to Scene::origin; metres and radians
   std::optional<glm::vec2> gaze;        // of all views; normalised image coordinates, origin top-left
   bool cut = false;                     // shows something unrelated to the last frame: history begins anew
 };

@@ -29,8 +29,8 @@ std::string addFirstCamera(Scene& scene, const Geometry& geometry);
 // of the picture.
 std::string addFirstFloor(Scene& scene, const Geometry& geometry);
 // A sun and a sky; or a lamp, if no sun could reach the surfaces that the first camera sees. Nothing if light reaches
-// at least half of them, be it that of lights, of emissive surfaces or of an environment, and, where there is no light
-// but that of emissive and unlit surfaces, also the floor that was added.
+// at least half of them, be it that of lights, of emissive surfaces or of an environment, and, where there are no lamps
+// and most of them are emissive or unlit, also the floor that was added, which is the last node.
 std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdded = false);
 // Whether no light reaches the floor that was added, so that it would only be a black disc.
 bool firstFloorIsDark(const Scene& scene, const Geometry& geometry);

@@ -91,6 +91,13 @@ float glow(const Scene& scene, const Geometry& geometry) {
   return power > 0 ? float(std::min(weighted / power, 1.0)) : 0;
 }
 
+// Whether most of what a picture shows is emissive or unlit.
+bool mostLightsItself(const Picture& picture) {
+  const auto own = std::ranges::count_if(picture, [](const MeterPoint& p) { return p.there > 0 && p.emitted > 0; }),
+             all = std::ranges::count_if(picture, [](const MeterPoint& p) { return p.there > 0; });
+  return 2 * own > all;
+}
+
 // Whether enough light reaches at least half of the surfaces that they can be seen beside the brightest. Emissive
 // surfaces are seen in any case, and are no measure for others, as a lamp is always far brighter than the room that it
 // lights. If nothing but such surfaces gives light, however, `glow` is a measure as well: one that emits no more than a
@@ -173,7 +180,8 @@ std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdde
   const Picture picture = meter->picture(frame);
   const Parts parts = partsOf(scene, geometry, picture, floorAdded);
   // Lamps of the model may leave the floor in the dark.
-  const bool floorCounts = scene.lights.empty() && !scene.environmentMap;
+  const bool floorCounts =
+      scene.lights.empty() && !scene.environmentMap && mostLightsItself(parts.things);
   if (isLit(parts.things, glow(scene, geometry)) &&
       (!floorCounts || floorBrightness(picture, parts.floor) > kDarkFloor))
     return {};
