@@ -300,6 +300,24 @@ TEST(Gltf, IntegersInEverySpelling) {
   EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("accessors[0].count"), HasSubstr("a whole number")));
 }
 
+// Flat shading gives triangles vertices of their own, whose colours and joints go with them.
+TEST(Gltf, ColoursOfAStripWithoutNormals) {
+  TriangleDocument d;
+  d.bytes.clear();
+  test::appendBytes<float>(d.bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
+  test::appendBytes<float>(d.bytes, {0, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 1, 1, 1, 0, 1});
+  d.primitive = R"({"attributes":{"POSITION":0,"COLOR_0":1},"mode":5})";
+  d.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
+      {"bufferView":1,"componentType":5126,"count":4,"type":"VEC4"}])";
+  d.views = R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":64}])";
+  TemporaryFolder folder;
+  Diagnostics warnings;
+  const Scene s = loadText(folder, d.json(), warnings);
+  const Primitive& p = s.meshes.at(0).primitives.at(0);
+  ASSERT_EQ(p.colors.size(), 6u) << warnings.format();
+  for (size_t i = 0; i < 6; ++i) EXPECT_EQ(p.colors[i], glm::vec4(p.positions[i].x, p.positions[i].y, 0, 1));
+}
+
 TEST(Gltf, SamplersSayHowTexturesAreFiltered) {
   const auto nearest = [](const std::string& sampler, std::string* messages = nullptr) {
     TriangleDocument d;

@@ -92,11 +92,11 @@ class MeshBuilder {
     if (!isCage_) dropDegenerate(out);
     readSkin(from, place, out);
     readTargets(from, place, out);
-    if (!isCage_) {
+    readColors(from, place, out);
+    if (!isCage_) {  // last, because flat shading gives triangles vertices of their own
       readNormals(from, place, out);
       readTangents(from, place, out);
     }
-    readColors(from, place, out);
     if (isCage_ && (!out.colors.empty() || !out.secondUvs.empty()))
       c_.warn(place, "a cage keeps neither vertex colours nor a second set of texture coordinates");
     c_.vertices += out.positions.size();
