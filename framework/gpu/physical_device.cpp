@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "fovea/error.h"
-#include "framework/gpu/driver_files.h"
+#include "framework/gpu/loader/driver_files.h"
 
 namespace fovea::gpu {
 namespace {

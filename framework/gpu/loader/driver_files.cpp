@@ -1,4 +1,4 @@
-#include "framework/gpu/driver_files.h"
+#include "framework/gpu/loader/driver_files.h"
 
 #include <algorithm>
 #include <cstdlib>
