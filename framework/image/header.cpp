@@ -230,6 +230,8 @@ void addTo(ExrPart& part, const std::string& name, uint64_t size, std::istream& 
 
 std::vector<ExrPart> exrParts(std::istream& exr) {
   exr.clear();
+  exr.seekg(0, std::ios::end);
+  const auto total = uint64_t(exr.tellg());
   exr.seekg(4);
   const uint32_t flags = littleEndian(exr);
   const bool severalParts = (flags & 0x1000u) != 0, deep = (flags & 0x800u) != 0;
@@ -242,6 +244,7 @@ std::vector<ExrPart> exrParts(std::istream& exr) {
       const uint64_t size = littleEndian(exr);
       if (!exr) return {};  // it ends here
       const std::streamoff begin = exr.tellg();
+      if (size > total - uint64_t(begin)) return {};
       addTo(part, name, size, exr);
       exr.clear();
       exr.seekg(begin + std::streamoff(size));
