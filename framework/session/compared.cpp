@@ -130,7 +130,7 @@ std::vector<size_t> colours(const std::vector<std::string>& names) {
   };
   const size_t r = find("R"), g = find("G"), b = find("B"), y = find("Y");
   if (std::max({r, g, b}) < names.size()) return {r, g, b};
-  if (names.size() == 1 || (names.size() == 2 && y < 2 && find("A") < 2)) return {y < 2 ? y : 0};
+  if (names.size() == 1 || (names.size() == 2 && y < 2 && find("A") < 2)) return {y < names.size() ? y : 0};
   if (names.size() == 3) return {0, 1, 2};
   return {};
 }

@@ -181,6 +181,9 @@ class Compare(CompareTest):
         self.exr("grey.exr", exr.Part({"Y": lambda x, y: 0.5}, window))
         run = self.succeeds("compare", "grey.exr", "g.exr")
         self.assertIn("`grey.exr` is grey", run.stderr)
+        for name, depth in (("near.exr", 0.5), ("far.exr", 0.25)):
+            self.exr(name, exr.Part({"Z": lambda x, y, d=depth: d}, window))
+        self.assertAlmostEqual(self.whole("near.exr", "far.exr"), error, delta=1e-6)
         self.exr("normal.exr", exr.Part({"N." + c: lambda x, y: 0.5 for c in "XYZ"}, window))
         self.exr("motion.exr", exr.Part({"motion." + c: lambda x, y: 0.5 for c in "XY"}, window))
         self.assertAlmostEqual(self.whole("normal.exr", "g.exr"), error, delta=1e-6)
