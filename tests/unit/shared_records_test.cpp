@@ -120,7 +120,7 @@ TEST(SharedRecords, Scene) {
                 AT(FrameBlock, time),
                 AT(FrameBlock, exposure),
                 AT(FrameBlock, boundsMin),
-                AT(FrameBlock, unused0),
+                AT(FrameBlock, preExposure),
                 AT(FrameBlock, boundsMax),
                 AT(FrameBlock, unused1),
                 AT(FrameBlock, environment),
