@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <glm/gtc/packing.hpp>
 #include <span>
 #include <stdexcept>
 
@@ -65,6 +66,18 @@ void fromReplaced(VkFormat format, graph::OutputData& output) {
   std::vector<int16_t> texels(values.size());
   for (size_t i = 0; i < values.size(); ++i)
     texels[i] = int16_t(std::lround(std::clamp(values[i], -1.0f, 1.0f) * 32767.0f));
+  const auto bytes = std::as_bytes(std::span(texels));
+  output.bytes.assign(bytes.begin(), bytes.end());
+  output.desc.format = format;
+}
+
+// Light is read back as 32-bit floats; tests see the texels as the pass stores them, to the bit.
+void toStoredLight(VkFormat format, graph::OutputData& output) {
+  const gpu::FormatInfo& info = gpu::formatInfo(format);
+  if (info.bytesPerTexel / info.channels == 4) return;
+  const std::vector<float> values = gpu::texelsToFloats(output.desc.format, output.bytes);
+  std::vector<uint16_t> texels(values.size());
+  std::ranges::transform(values, texels.begin(), [](float v) { return glm::packHalf1x16(v); });
   const auto bytes = std::as_bytes(std::span(texels));
   output.bytes.assign(bytes.begin(), bytes.end());
   output.desc.format = format;
@@ -280,8 +293,10 @@ void PassTest::run(uint32_t frames) {
   for (const graph::PortSpec& port : impl_->declaration->ports)
     for (const graph::MemberSpec& m : port.members) {
       const auto output = impl_->result.outputs.find(graph::memberPath(port, m));
-      if (output != impl_->result.outputs.end() && replaced(m.resource.format))
-        fromReplaced(m.resource.format, output->second);
+      if (output == impl_->result.outputs.end()) continue;
+      if (replaced(m.resource.format)) fromReplaced(m.resource.format, output->second);
+      if (m.resource.light > 0 && port.direction == graph::Direction::Output)
+        toStoredLight(m.resource.format, output->second);
     }
   const std::vector<std::string> messages = takeValidationMessages();
   if (!messages.empty())

@@ -60,6 +60,7 @@ class PathTrace : public Pass {
     settings.box = p.text("filter") == "box";
     settings.full = p.text("view.materials") == "full";
     settings.seed = hashCombine(frame.seed, p.flag("per_frame") ? uint32_t(frame.index) : 0u);
+    settings.unit = frame.preExposure;
     settings.progress = [&](double share) { return ctx.progress(share); };
     const PathTraceImages images{ctx.outputAs<glm::vec4>("radiance"), ctx.outputAs<glm::vec4>("direct"),
                                  ctx.outputAs<glm::vec4>("indirect"), ctx.outputAs<glm::vec4>("variance"),

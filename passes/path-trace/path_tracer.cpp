@@ -37,8 +37,7 @@ class Tracer {
  public:
   Tracer(const Frame& frame, const View& view, const RayScene& rays, const PathTraceSettings& settings);
   PathTraceStatistics run();
-  // unit: factor on radiance.
-  void write(const PathTraceImages& images, double unit) const;
+  void write(const PathTraceImages& images) const;
 
  private:
   void round(uint32_t end);
@@ -209,7 +208,8 @@ glm::dvec3 Tracer<Integrator>::halfMean(size_t pixel, uint32_t samples, uint32_t
 }
 
 template <class Integrator>
-void Tracer<Integrator>::write(const PathTraceImages& images, double unit) const {
+void Tracer<Integrator>::write(const PathTraceImages& images) const {
+  const double unit = double(settings_.unit);
   const auto put = [](std::span<glm::vec4> image, size_t pixel, glm::dvec3 value) {
     if (!image.empty()) image[pixel] = glm::vec4(glm::vec3(value), 1);
   };
@@ -232,7 +232,7 @@ PathTraceStatistics tracePaths(const Frame& frame, const View& view, const RaySc
                                const PathTraceSettings& settings, const PathTraceImages& images) {
   const auto run = [&](auto&& tracer) {
     const PathTraceStatistics statistics = tracer.run();
-    tracer.write(images, double(frame.preExposure));
+    tracer.write(images);
     return statistics;
   };
   if (settings.full) return run(Tracer<FullIntegrator>(frame, view, rays, settings));

@@ -20,6 +20,7 @@ struct PathTraceSettings {
   bool independent = false;  // independent random numbers; if false, Owen-scrambled Sobol' points
   bool box = false;          // rays through the whole pixel; if false, through its centre
   bool full = false;         // full materials (passes/path-trace/bsdf.h); if false, diffuse ones
+  float unit = 1;            // factor on radiance in the images
   // Called from time to time on the calling thread, with the share of the work that is done. Returning false stops
   // the run soon, with fewer samples.
   std::function<bool(double)> progress;

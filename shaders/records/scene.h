@@ -104,7 +104,7 @@ SHARED_CONSTANT uint kWrapMirror = 2u;
 SHARED_CONSTANT uint kTextureLinear = 16u;        // not sRGB-encoded
 SHARED_CONSTANT uint kMaterialDoubleSided = 32u;  // only in the flags of a material's base colour texture
 SHARED_CONSTANT uint kTextureSecondSet = 64u;     // full materials take the second texture coordinates
-SHARED_CONSTANT uint kTextureNearest = 512u;     // shows the nearest texel; otherwise four are interpolated
+SHARED_CONSTANT uint kTextureNearest = 512u;      // shows the nearest texel; otherwise four are interpolated
 // Also there, and only if materials are full (materials/passage.glsl).
 SHARED_CONSTANT uint kMaterialBlended = 128u;    // alpha is the share of light that the surface stops
 SHARED_CONSTANT uint kMaterialTransmits = 256u;  // thin glass

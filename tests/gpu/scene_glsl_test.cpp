@@ -124,7 +124,7 @@ TEST(SceneGlsl, NearestTexelsAndAlphaOfVertices) {
       const uint32_t k = m * 32 + i;
       const Texture& t = scene.textures[scene.materials[m].baseColorTexture.texture];
       const glm::vec2 texel =
-          glm::floor(glm::vec2(t.width, t.height) * (4 * glm::vec2(random(40, k), random(41, k)) - 2.0f));
+          glm::floor(glm::vec2(t.width, t.height) * (4.0f * glm::vec2(random(40, k), random(41, k)) - 2.0f));
       const glm::vec2 inside(0.1f + 0.8f * random(42, k), 0.1f + 0.8f * random(43, k));
       queries.emplace_back(float(m), (texel + inside) / glm::vec2(t.width, t.height), random(44, k));
     }

@@ -331,9 +331,8 @@ TEST(LocatedErrors, OfTheCommandLine) {
 // JSON has one kind of number: 5, 5.0 and 5e0 are the same.
 TEST(LocatedErrors, WholeNumbersInEverySpelling) {
   const auto errors = [](const std::string& number) {
-    return errorsOf((R"({"parameters": {"n": )" + number + R"(}, "passes": {"a": {"type": "source",
-        "params": {"count": "$n"}}}, "outputs": {"o": "a"}})")
-                        .c_str());
+    return errorsOf(R"({"parameters": {"n": )" + number + R"(}, "passes": {"a": {"type": "source",
+        "params": {"count": "$n"}}}, "outputs": {"o": "a"}})");
   };
   using testing::ElementsAre;
   for (const char* text : {"5e0", "5.0", "0.5e1", "5.000", "50e-1"})

@@ -19,7 +19,6 @@ namespace fovea::scene {
 namespace {
 
 constexpr uint32_t kWidth = 48;                   // of the picture, pixels
-constexpr uint32_t kGathered = 4;                 // rays for further bounces at each of them
 constexpr float kDark = 0.02f;                    // of the brightest light: less is not visible beside it
 constexpr float kDarkFloor = 0.1f;                // the same of a floor beside what lights itself
 constexpr float kFaint = 0.005f;                  // of what emissive surfaces emit: less than lamps give
@@ -93,9 +92,10 @@ float glow(const Scene& scene, const Geometry& geometry) {
 
 // Whether most of what a picture shows is emissive or unlit.
 bool mostLightsItself(const Picture& picture) {
-  const auto own = std::ranges::count_if(picture, [](const MeterPoint& p) { return p.there > 0 && p.emitted > 0; }),
-             all = std::ranges::count_if(picture, [](const MeterPoint& p) { return p.there > 0; });
-  return 2 * own > all;
+  uint32_t own = 0, others = 0;
+  for (const MeterPoint& point : picture)
+    if (point.there > 0) ++(point.emitted > 0 ? own : others);
+  return own > others;
 }
 
 // Whether enough light reaches at least half of the surfaces that they can be seen beside the brightest. Emissive
@@ -180,8 +180,7 @@ std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdde
   const Picture picture = meter->picture(frame);
   const Parts parts = partsOf(scene, geometry, picture, floorAdded);
   // Lamps of the model may leave the floor in the dark.
-  const bool floorCounts =
-      scene.lights.empty() && !scene.environmentMap && mostLightsItself(parts.things);
+  const bool floorCounts = scene.lights.empty() && !scene.environmentMap && mostLightsItself(parts.things);
   if (isLit(parts.things, glow(scene, geometry)) &&
       (!floorCounts || floorBrightness(picture, parts.floor) > kDarkFloor))
     return {};

@@ -62,9 +62,10 @@ class CameraReader {
       near = instead;
     }
     if (far > 0 && far <= near) {
-      c_.warn(place_, fmt::format("zfar ({:g}) has to be greater than znear ({:g}): {}", far, near,
-                                  far < near && far >= kLeastNear ? "the two are exchanged"
-                                                                  : "the size of the scene decides on zfar"));
+      c_.warn(json::joinPath(place_, "zfar"),
+              fmt::format("zfar ({:g}) has to be greater than znear ({:g}): {}", far, near,
+                          far < near && far >= kLeastNear ? "the two are exchanged"
+                                                          : "the size of the scene decides on zfar"));
       if (far < near && far >= kLeastNear)
         std::swap(near, far);
       else

@@ -39,7 +39,8 @@ double numberOr(const json::Value* object, std::string_view key, double fallback
 
 std::string textOr(const json::Value* object, std::string_view key, std::string fallback) {
   const json::Value* v = memberOf(object, key);
-  return v && v->isString() ? v->string : std::move(fallback);
+  if (v && v->isString()) return v->string;
+  return fallback;
 }
 
 std::array<double, 3> threeOr(const json::Value* object, std::string_view key, double fallback) {
