@@ -33,6 +33,12 @@ constexpr std::pair<std::string_view, std::string_view> kEffects[] = {
     {"MSFT_lod", "the first level is shown"},
     {"MSFT_texture_dds", "the fall-back image of the texture is shown"}};
 
+// Of an object, or none.
+const std::vector<json::Member>& membersOf(const json::Value* object) {
+  static const std::vector<json::Member> kNone;
+  return object ? object->members : kNone;
+}
+
 std::string effectOf(std::string_view extension) {
   for (const auto& [name, effect] : kEffects)
     if (name == extension) return std::string(effect);
@@ -81,7 +87,7 @@ class UnreadReporter : DocumentReader {
     const Value* extensions = v.find("extensions");
     if (extensions && !extensions->isObject())
       once("extensions", *extensions, path, "`extensions` is no object: it is ignored");
-    for (const json::Member& e : extensions ? extensions->members : std::vector<json::Member>()) {
+    for (const json::Member& e : membersOf(extensions)) {
       if (isSupported(e.key)) {
         visit(e.value, inside(path, e.key));
         continue;
@@ -107,7 +113,8 @@ class UnreadReporter : DocumentReader {
       if (v.isString() && !isSupported(v.string) && !seen_.contains(v.string))
         ignored += (ignored.empty() ? "" : ", ") + v.string.substr(0, 80);
     if (!ignored.empty())
-      warn(*used, "extensionsUsed", "ignored: " + ignored + "; the model's fall-back is shown instead");
+      warn(*used, "extensionsUsed",
+           "not supported, so that the model is shown without what they add: " + ignored);
   }
 
   // Textures are read at the level of their image, at all distances alike.
@@ -134,8 +141,7 @@ class UnreadReporter : DocumentReader {
              "has no material: it is shown in a grey of 0.8 without metal, instead of glTF's white, rough "
              "metal");
       const Value* attributes = p.find("attributes");
-      for (const json::Member& a : attributes ? attributes->members : std::vector<json::Member>())
-        visitAttribute(*attributes, a, place);
+      for (const json::Member& a : membersOf(attributes)) visitAttribute(*attributes, a, place);
       for (const Value& target : itemsOf(&p, "targets"))
         for (const json::Member& a : target.members)
           if (a.key != "POSITION" && a.key != "NORMAL" && !a.key.starts_with('_'))
