@@ -29,7 +29,8 @@ std::string whyTooPlain(uint64_t pixels, uint64_t bytes);
 // header claims, up to several GiB, before it notices. What else is wrong with the file is left to OpenEXR.
 std::string whyForged(std::istream& exr);
 
-// What the header of an EXR file says of a part, for which whyForged() has no objection.
+// What the header of an EXR file says about one of its parts. Only headers to which whyForged() has no objection may be
+// read.
 struct ExrPart {
   struct Channel {
     std::string name;

@@ -29,8 +29,8 @@ void addCompareOptions(CLI::App& command, CompareOptions& options);
 // Adds an option that may be given several times, each time with one value.
 CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values,
                      const std::string& doc);
-// Every option that is a number has one of these two, which take numbers as parseDecimal() reads them and name the
-// range if they refuse one. (CLI11's own checks let NaN pass, and read 010 as 8.)
+// Validators, of which every option that is a number has one. They accept the numbers that parseDecimal() reads, and
+// their messages name the range. CLI11's own checks will not do, since they let NaN pass and read 010 as 8.
 CLI::Validator numberBetween(double low, double high);
 // Give it to `transform()`, which replaces 5e2 and 500.0 by 500, as an option of an integer type expects it.
 CLI::Validator wholeNumberBetween(int64_t low, int64_t high);

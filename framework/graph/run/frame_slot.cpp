@@ -37,10 +37,12 @@ constexpr float kGreatestHalf = 65504;
 OutputData readBack(const ResourceDesc& desc, const gpu::Buffer& copied, float preExposure) {
   OutputData data;
   data.desc = desc;
-  data.bytes.resize(resourceBytes(desc));
-  std::memcpy(data.bytes.data(), copied.mapped(), data.bytes.size());
-  if (desc.light == 0) return data;
-  std::vector<float> values = gpu::texelsToFloats(desc.format, data.bytes);
+  const std::span texels(static_cast<const std::byte*>(copied.mapped()), resourceBytes(desc));
+  if (desc.light == 0) {
+    data.bytes.assign(texels.begin(), texels.end());
+    return data;
+  }
+  std::vector<float> values = gpu::texelsToFloats(desc.format, texels);
   const uint32_t channels = gpu::formatInfo(desc.format).channels;
   const float unit = std::pow(preExposure, -float(desc.light));
   const bool half = gpu::formatInfo(desc.format).bytesPerTexel / channels == 2;

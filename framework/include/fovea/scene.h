@@ -269,8 +269,8 @@ inline constexpr double kGazeGap = 0.05;  // s; exceeded by slow trackers, pause
 
 struct Scene {
   std::string name, source;  // source: scene file or model
-  // The point of the author's world space that is 0 in everything below: 0 unless the scene lies so far from there that
-  // single precision would not do (framework/scene/origin.h).
+  // The point in the author's world space to which all coordinates below are relative. It is 0 unless the scene lies so
+  // far from the author's origin that single precision would lose visible detail (framework/scene/origin.h).
   glm::dvec3 origin{0};
   std::vector<Texture> textures;
   std::vector<Material> materials;  // at least one
@@ -289,7 +289,7 @@ struct Scene {
   std::optional<Lens> lens;  // of these views; without one they have the camera's field of view
   float exposure = 1;        // display = sRGB(exposure * radiance)
   // Factor on all light as passes store it, so that it fits into half floats; 0 stands for the power of two nearest to
-  // the exposure. It is undone in what is read back from outputs. See scene::preExposure().
+  // the exposure. What is read back from outputs is divided by it again. See scene::preExposure().
   float preExposure = 0;
   // The background: an environment map, which lights the scene, or else a radiance that is only visible.
   std::shared_ptr<const EnvironmentMap> environmentMap;

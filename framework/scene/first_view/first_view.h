@@ -24,9 +24,9 @@ FirstView addFirstView(Scene& scene);
 // A camera at eye height inside surrounding walls, if it shows more of the scene than a view from outside; else one in
 // front of the scene and above it, which shows the whole scene.
 std::string addFirstCamera(Scene& scene, const Geometry& geometry);
-// A floor under the scene, if the first camera sees it from outside and with ground around it, or else if surfaces fill
-// less than half of its picture: the smallest floor that catches the shadow and with which surfaces fill three fifths
-// of the picture.
+// Puts a floor under the scene if the first camera stands outside of it and would see ground around it, or if the
+// camera stands inside and surfaces fill less than half of its picture. The floor is the smallest one that catches the
+// shadow of the scene and with which surfaces fill three fifths of the picture.
 std::string addFirstFloor(Scene& scene, const Geometry& geometry);
 // A sun and a sky; or a lamp, if no sun could reach the surfaces that the first camera sees. Nothing if light reaches
 // at least half of them, be it that of lights, of emissive surfaces or of an environment, and, where there are no lamps

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
-#include <limits>
 #include <optional>
 #include <vector>
 

@@ -30,7 +30,7 @@ struct Findings {
   void apply(json::Value& value) const;
 };
 
-// What all three parts need: access to lists of objects, indices into other lists, and extensions.
+// What all parts need: access to lists of objects, indices into other lists, and extensions.
 class DocumentReader {
  public:
   using Value = json::Value;
