@@ -89,6 +89,13 @@ VkFormat formatFromName(std::string_view name) {
   return VK_FORMAT_UNDEFINED;
 }
 
+bool holdsLight(VkFormat format) {
+  const FormatInfo& info = formatInfo(format);
+  const uint32_t channelBytes = info.bytesPerTexel / info.channels;
+  return info.type == T::Float && !info.depth && info.bytesPerTexel % info.channels == 0 &&
+         (channelBytes == 2 || channelBytes == 4);
+}
+
 namespace {
 
 template <class T, class Convert>

@@ -32,6 +32,9 @@ VkFormat formatFromName(std::string_view name);
 // The format of texels with so many channels, 1 to 4, of 32-bit floats.
 VkFormat floatFormat(uint32_t channels);
 
+// Whether texels of the format can hold light: 16- or 32-bit floats, one for each channel, and no depth.
+bool holdsLight(VkFormat format);
+
 // Converts tightly packed texels to floats with interleaved channels: unorm and sRGB to [0, 1] (without removing the
 // sRGB curve), snorm to [-1, 1]. Throws Error(Internal) for integer and packed formats.
 std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> texels);

@@ -10,6 +10,7 @@
 
 #include "framework/base/paths.h"
 #include "framework/graph/pass/registry.h"
+#include "framework/scene/lights.h"
 #include "framework/scene/scene.h"
 #include "framework/session/course.h"
 #include "framework/session/graph_run.h"
@@ -111,7 +112,7 @@ void Session::Impl::use(SessionOptions changed) {
   ports = std::move(wanted);
   warnings = std::move(messages);
   run->executor().observe(std::move(observations));
-  for (const auto& [name, bytes] : inputs) run->executor().setInput(name, bytes);
+  for (const auto& [name, bytes] : inputs) run->executor().setInput(name, bytes, scene::preExposure(scene));
 }
 
 void Session::Impl::checkInputs() const {
@@ -172,7 +173,7 @@ void Session::read(const std::vector<std::string>& names) {
 }
 
 void Session::setInput(const std::string& name, std::span<const std::byte> bytes) {
-  impl_->run->executor().setInput(name, bytes);
+  impl_->run->executor().setInput(name, bytes, scene::preExposure(impl_->scene));
   impl_->inputs[name].assign(bytes.begin(), bytes.end());
 }
 

@@ -240,6 +240,29 @@ TEST(Session, InputsOfTheGraphAreFilled) {
       HasSubstr("no input `dark`"));
 }
 
+// Light comes in and goes out in the units of the scene, also where halves could not hold it.
+TEST(Session, LightGoesThroughAGraphInTheUnitsOfTheScene) {
+  const GraphFile file(R"({
+    "inputs": { "light": { "format": "rgba16f", "light": true, "width": 2, "height": 2 } },
+    "passes": { "mean": { "type": "accumulate", "inputs": { "value": "inputs.light" } } },
+    "outputs": { "image": "mean" } })");
+  for (const float unit : {1e-7f, 1.0f, 1e7f}) {
+    SCOPED_TRACE(unit);
+    scene::Scene scene = scene::builtin("cornellbox");
+    scene.exposure /= unit;
+    Session session(file.path(), scene, options({}, {}));
+    std::vector<float> given(2 * 2 * 4);
+    for (size_t i = 0; i < given.size(); ++i) given[i] = unit * (float(i) + 0.5f);
+    session.setInput("light", std::as_bytes(std::span(given)));
+    const image::Image out = session.picture(session.render(0), "image");
+    for (size_t i = 0; i < given.size(); ++i)
+      if (i % 4 != 3) EXPECT_NEAR(out.data[i] / unit, given[i] / unit, 1e-3 * double(i + 1));
+    EXPECT_THAT(messageOf(ExitCode::BadInput,
+                          [&] { session.setInput("light", std::as_bytes(std::span(given)).first(32)); }),
+                AllOf(HasSubstr("wants 64 bytes, got 32"), HasSubstr("32-bit floats")));
+  }
+}
+
 // Without the answer, the frame would take an hour.
 TEST(Session, LongPassesTellHowFarTheyAreAndStop) {
   const scene::Scene scene = scene::builtin("cornellbox");

@@ -287,6 +287,10 @@ const Mistake kMistakes[] = {
      R"({"inputs": {"i": {"format": "rgba16ff"}}, "passes": {"a": {"type": "source"}}, "outputs": {"o": "a"}})",
      "g.json:1:29: error: no texel format: the text \"rgba16ff\" (at inputs.i.format)\n  -> did you mean "
      "`rgba16f`?"},
+    {"LightInAFormatWithoutFloats",
+     R"({"inputs": {"i": {"format": "rgba8", "light": true}}, "passes": {"a": {"type": "source"}}, "outputs": {"o": "a"}})",
+     "g.json:1:29: error: texels of the format `rgba8` cannot hold light (at inputs.i.format)\n  -> use a "
+     "format of 16- or 32-bit floats, such as rgba16f"},
     {"InputWithoutAType",
      R"({"inputs": {"i": {"width": 4}}, "passes": {"a": {"type": "source"}}, "outputs": {"o": "a"}})",
      "g.json:1:18: error: an input needs a `format` (image), an `element` (buffer) or a `bundle` (at "

@@ -235,6 +235,11 @@ TEST_F(PassFiles, AreReportedWhereTheyAreWrong) {
       "{\"doc\": \"x\", \"outputs\": {\n \"image\": {\"doc\": \"x\", \"format\": \"rgba8x\"}}, "
       "\"steps\": [{\"shader\": \"a.comp\", \"over\": \"image\"}]}",
       "no texel format: the text \"rgba8x\"");
+  expectReport(
+      "{\"doc\": \"x\", \"outputs\": {\n \"image\": {\"doc\": \"x\", \"format\": \"rgba8\", \"light\": "
+      "true}}, "
+      "\"steps\": [{\"shader\": \"a.comp\", \"over\": \"image\"}]}",
+      "port `image`: light needs a format of 16- or 32-bit floats");
   expectReport("{\"doc\": \"x\", \"steps\": [\n {\"shader\": \"a.comp\", \"over\": \"image\"}]}",
                "blur.pass.json:2:2: error: pass type `blur`: step `a`: no port `image`");
   expectReport(

@@ -38,6 +38,10 @@ ResourceDesc readImage(Expansion& all, Scope& scope, json::ObjectReader& reader,
     report(all, scope, format, fmt::format("no texel format: {}", format.describe()),
            nearestRemedy(format.string, names));
   }
+  desc.light = reader.boolean("light", false) ? 1 : 0;
+  if (desc.light > 0 && desc.format != VK_FORMAT_UNDEFINED && !gpu::holdsLight(desc.format))
+    report(all, scope, format, "texels of the format `" + format.string + "` cannot hold light",
+           "use a format of 16- or 32-bit floats, such as rgba16f");
   const auto size = [&](const char* key, int64_t fallback) {
     return static_cast<uint32_t>(readSize(all, scope, reader, key, fallback));
   };

@@ -133,6 +133,8 @@ class Validator {
     const bool makes = port.direction == Direction::Output || port.direction == Direction::Scratch;
     if (image && makes && r.format == VK_FORMAT_UNDEFINED)
       wrong(fmt::format("port `{}`: an output needs a format", path));
+    if (r.light > 0 && format && !gpu::holdsLight(r.format))
+      wrong(fmt::format("port `{}`: light needs a format of 16- or 32-bit floats", path));
     if (image && r.volume && r.array) wrong(fmt::format("port `{}`: a volume has no layers", path));
     if (!image && r.element.empty()) wrong(fmt::format("port `{}`: a buffer needs an element type", path));
     if (!image && r.stride == 0) wrong(fmt::format("port `{}`: a buffer needs a stride", path));

@@ -110,6 +110,11 @@ Json inputSchema() {
   Json properties{{"doc", {{"type", "string"}}},
                   {"optional", {{"type", "boolean"}, {"description", "of a sub-graph: need not be wired"}}},
                   {"format", {{"enum", std::move(formats)}}},
+                  {"light",
+                   {{"type", "boolean"},
+                    {"description",
+                     "of an image: its rgb is light, such as radiance, given as 32-bit floats in the "
+                     "units of the scene"}}},
                   {"element", {{"type", "string"}}}};
   for (const char* key : {"width", "height", "depth", "layers", "mips", "stride", "count"})
     properties[key] = size;

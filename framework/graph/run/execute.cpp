@@ -12,6 +12,7 @@
 #include "framework/graph/pass/guard.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/run/frame_slot.h"
+#include "framework/graph/run/light_units.h"
 #include "framework/graph/steps/steps.h"
 #include "framework/scene/frame.h"
 
@@ -303,16 +304,19 @@ Executor::Executor(gpu::Device& device, std::shared_ptr<const Plan> plan, const 
 
 Executor::~Executor() = default;
 
-void Executor::setInput(const std::string& name, std::span<const std::byte> bytes) {
+void Executor::setInput(const std::string& name, std::span<const std::byte> bytes, float preExposure) {
   const BoundGraph& graph = *impl_->plan->graph;
   for (uint32_t i = 0; i < graph.resources.size(); ++i) {
     const BoundResource& resource = graph.resources[i];
     if (!resource.external || resource.name != name) continue;
     if (!impl_->plan->resourceLive[i]) return;
-    if (bytes.size() != resourceBytes(resource.desc))
-      throw Error(ExitCode::BadInput, "input `" + name + "` wants " +
-                                          std::to_string(resourceBytes(resource.desc)) + " bytes, got " +
-                                          std::to_string(bytes.size()));
+    if (const uint64_t wanted = givenBytes(resource.desc); bytes.size() != wanted)
+      throw Error(ExitCode::BadInput,
+                  "input `" + name + "` wants " + std::to_string(wanted) + " bytes, got " +
+                      std::to_string(bytes.size()),
+                  resource.desc.light > 0 ? "light is given as 32-bit floats" : "");
+    std::vector<std::byte> stored;
+    if (resource.desc.light > 0) bytes = stored = inStoredUnits(resource.desc, bytes, preExposure);
     impl_->device.waitIdle();
     if (resource.desc.kind == ResourceKind::Image)
       gpu::upload(impl_->device, impl_->state.resources[i].images[0], bytes, impl_->plan->startLayout[i][0]);

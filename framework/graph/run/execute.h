@@ -91,8 +91,10 @@ class Executor {
   ~Executor();
 
   // Sets the contents of an input of the whole graph ("radiance", "surface.position"), which are kept until set
-  // again. Waits for the device.
-  void setInput(const std::string& name, std::span<const std::byte> bytes);
+  // again: its texels or elements, tightly packed. Light ("light": true) is given as 32-bit floats in the units of the
+  // scene, whose Frame::preExposure is `preExposure`. Waits for the device. Throws Error(BadInput) for an input that
+  // the graph does not have, or another number of bytes.
+  void setInput(const std::string& name, std::span<const std::byte> bytes, float preExposure = 1);
 
   // Chooses what frames that are submitted with `observe` read back besides the outputs. Finishes the frames under way
   // and allocates, so that frames do neither. Throws Error(BadInput) for a pass that does not run and for an image

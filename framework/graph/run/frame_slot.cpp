@@ -1,14 +1,12 @@
 #include "framework/graph/run/frame_slot.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <limits>
 #include <span>
 
 #include "fovea/error.h"
 #include "framework/gpu/barrier.h"
-#include "framework/gpu/format.h"
+#include "framework/graph/run/light_units.h"
 
 namespace fovea::graph {
 namespace {
@@ -31,34 +29,10 @@ StepTiming& stepTiming(std::vector<StepTiming>& steps, const std::string& name) 
   return steps.emplace_back(StepTiming{name, 0});
 }
 
-constexpr float kGreatestHalf = 65504;
-
-// What was copied of a resource. Light leaves the units in which passes store it.
+// What was copied of a resource.
 OutputData readBack(const ResourceDesc& desc, const gpu::Buffer& copied, float preExposure) {
-  OutputData data;
-  data.desc = desc;
   const std::span texels(static_cast<const std::byte*>(copied.mapped()), resourceBytes(desc));
-  if (desc.light == 0) {
-    data.bytes.assign(texels.begin(), texels.end());
-    return data;
-  }
-  std::vector<float> values = gpu::texelsToFloats(desc.format, texels);
-  const uint32_t channels = gpu::formatInfo(desc.format).channels;
-  const float unit = std::pow(preExposure, -float(desc.light));
-  const bool half = gpu::formatInfo(desc.format).bytesPerTexel / channels == 2;
-  const float greatest = half ? kGreatestHalf : std::numeric_limits<float>::max();
-  const uint32_t colors = std::min(channels, 3u);
-  for (size_t texel = 0; texel < values.size(); texel += channels) {
-    const std::span<float> light(&values[texel], colors);
-    // Devices store what is too bright as the greatest number or as infinity.
-    data.beyondRange += !std::ranges::all_of(light, [&](float v) { return v < greatest; });
-    for (float& v : light) v *= unit;
-  }
-  data.desc.light = 0;
-  data.desc.format = gpu::floatFormat(channels);
-  const auto bytes = std::as_bytes(std::span(values));
-  data.bytes.assign(bytes.begin(), bytes.end());
-  return data;
+  return inSceneUnits(desc, texels, preExposure);
 }
 
 }  // namespace
