@@ -21,7 +21,7 @@ packages=(
   libpng-dev libstb-dev libtinyexr-dev
   # tests and benchmarks
   clang-16 libclang-rt-16-dev clang-format clang-tidy libgtest-dev libgmock-dev libbenchmark-dev
-  python3-jsonschema python3-matplotlib
+  python3-jsonschema python3-matplotlib python3-numpy
   chromium chromium-driver python3-selenium
 )
 
