@@ -1,0 +1,109 @@
+// A small scene with light of every kind, and how tests run a graph over it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/scene/environment/environment_map.h"
+#include "tests/support/graph_run.h"
+#include "tests/support/shapes.h"
+
+namespace fovea::test {
+
+constexpr uint32_t kSide = 40;  // of the pictures, pixels
+
+// All stock graphs with the output `radiance`: those that each run of the tests has, and the others.
+constexpr const char* kGraphs[] = {"direct",
+                                   "ir_1000",
+                                   "ours",
+                                   "foveal",
+                                   "foveal_stereo",
+                                   "reference",
+                                   "alternatives/ddgi",
+                                   "alternatives/vxgi",
+                                   "alternatives/restir_gi"};
+constexpr const char* kOtherGraphs[] = {"foveal_no_near_field",
+                                        "foveal_no_shadow_rays",
+                                        "foveal_view",
+                                        "foveal_voxel_paths",
+                                        "ir_accumulated",
+                                        "ir_eq",
+                                        "ir_fixed_seed",
+                                        "ir_stereo",
+                                        "ir_v",
+                                        "ir_v_accumulated",
+                                        "ours_cosine",
+                                        "ours_r",
+                                        "ours_saccades",
+                                        "ours_unclamped",
+                                        "stereo",
+                                        "alternatives/ddgi_foveated",
+                                        "alternatives/ddgi_two_bounces",
+                                        "alternatives/pt_denoised",
+                                        "alternatives/restir_gi_foveated"};
+
+inline std::string nameOfGraph(const testing::TestParamInfo<const char*>& info) {
+  std::string name = info.param;
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
+
+// A corner under a sky, with a sun, a lamp, a spot light, and emissive and unlit surfaces.
+inline scene::Scene cornerInTheOpen() {
+  scene::Scene s;
+  s.fullMaterials = true;
+  addQuad(s, addMaterial(s, {0.6f, 0.5f, 0.4f}), {-4, 0, 4}, {8, 0, 0}, {0, 0, -8});
+  addQuad(s, addMaterial(s, {0.3f, 0.6f, 0.3f}), {-4, 0, -1}, {8, 0, 0}, {0, 3, 0});
+  const uint32_t panel = addMaterial(s, glm::vec3(0.2f));
+  s.materials[panel].emission = {2, 1.5f, 1};
+  addQuad(s, panel, {-1.5f, 0.4f, -0.99f}, {0.8f, 0, 0}, {0, 0.8f, 0});
+  std::vector<glm::vec3> texels(16 * 8, glm::vec3(0.3f, 0.4f, 0.6f));
+  s.environmentMap = std::make_shared<scene::EnvironmentMap>(16, 8, texels);
+  s.lights.resize(3);
+  s.lights[0].direction = glm::normalize(glm::vec3(0.4f, -1, -0.5f));
+  s.lights[0].intensity = 2;
+  s.lights[1].type = scene::LightType::Point;
+  s.lights[1].position = {1.5f, 1, 0.5f};
+  s.lights[2].type = scene::LightType::Spot;
+  s.lights[2].position = {-1, 2, 1};
+  s.lights[2].direction = {0, -1, 0};
+  s.lights[2].intensity = 3;
+  s.cameras.emplace_back();
+  s.cameras[0].position = {0, 1.5f, 4};
+  s.cameras[0].orientation = glm::angleAxis(glm::radians(-12.0f), glm::vec3(1, 0, 0));
+  s.exposure = 0.4f;
+  return s;
+}
+
+inline GraphRun renderCorner(const char* graph, const scene::Scene& s) {
+  GraphRunOptions options;
+  options.size = {kSide, kSide};
+  options.frames = 3;
+  options.set = {"vpl_count=100", "map_size=32", "shadow_map_size=128", "voxels=32", "spp=8"};
+  const std::string name = graph;
+  std::erase_if(options.set, [&](const std::string& set) {
+    const bool vpls = name != "direct" && name != "reference" && !name.starts_with("alternatives/");
+    if (set.starts_with("spp")) return name != "reference";
+    if (set.starts_with("shadow")) return name == "reference";
+    if (set.starts_with("voxels")) return name.starts_with("ir_") || (!vpls && name != "alternatives/vxgi");
+    return !vpls;
+  });
+  options.outputs = {"radiance"};
+  return runGraph(graph, s, options);
+}
+
+// Mean over all channels of the squared difference, relative to the squared value.
+inline double relativeError(const std::vector<float>& values, const std::vector<float>& expected) {
+  double error = 0;
+  for (size_t i = 0; i < expected.size(); ++i)
+    if (i % 4 != 3)
+      error += std::pow(double(values[i] - expected[i]), 2) / (std::pow(double(expected[i]), 2) + 0.01);
+  return error / (0.75 * double(expected.size()));
+}
+
+}  // namespace fovea::test

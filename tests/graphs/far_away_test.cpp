@@ -1,0 +1,46 @@
+// Tests that pictures do not depend on where a scene lies: with coordinates of a map, or thousands of kilometres from the
+// origin, every graph makes the picture that it makes at the origin.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "framework/scene/export/gltf.h"
+#include "framework/scene/load.h"
+#include "tests/graphs/corner.h"
+#include "tests/unit/scene_support.h"
+
+namespace fovea::test {
+namespace {
+
+class FarAway : public testing::TestWithParam<const char*> {};
+
+TEST_P(FarAway, PicturesAreThoseAtTheOrigin) {
+  const TemporaryFolder folder;
+  Diagnostics warnings;
+  scene::Scene corner = cornerInTheOpen();
+  corner.name = "corner";
+  corner.environmentMap = nullptr;
+  scene::exportGltf(corner, folder.path(), warnings);
+  const auto pictureAt = [&](glm::dvec3 place) {
+    const std::string text = fmt::format(
+        R"({{"models": [{{"file": "corner.gltf", "translate": [{}, {}, {}]}}], "exposure": 0.4}})", place.x,
+        place.y, place.z);
+    const scene::Scene scene = scene::load(folder.write("scene.json", text).string(), warnings);
+    EXPECT_LT(glm::distance(scene.origin, place), 20);
+    return toFloats(renderCorner(GetParam(), scene).outputs.at("radiance"));
+  };
+  const std::vector<float> here = pictureAt({});
+  ASSERT_GT(relativeError(std::vector<float>(here.size(), 0), here), 0.1);  // it shows something
+  for (const glm::dvec3 place :
+       {glm::dvec3(54000.1, 0, 0), glm::dvec3(448262.125, 12.5, -5411932.25), glm::dvec3(1e7, -1e7, 1e7)})
+    EXPECT_LT(relativeError(pictureAt(place), here), 1e-3) << place.x << " " << place.y << " " << place.z;
+}
+
+INSTANTIATE_TEST_SUITE_P(Graphs, FarAway, testing::Values("direct", "foveal"), nameOfGraph);
+INSTANTIATE_TEST_SUITE_P(LongGraphs, FarAway,
+                         testing::Values("ir_1000", "ours", "reference", "foveal_stereo", "alternatives/ddgi",
+                                         "alternatives/vxgi", "alternatives/restir_gi"),
+                         nameOfGraph);
+INSTANTIATE_TEST_SUITE_P(LongOtherGraphs, FarAway, testing::ValuesIn(kOtherGraphs), nameOfGraph);
+
+}  // namespace
+}  // namespace fovea::test
