@@ -230,6 +230,26 @@ TEST(FirstView, LightOfTheModelStaysAloneIfItIsEnough) {
   }
 }
 
+// A stage: what a spot light of the model leaves in the dark stays dark, unless it lights hardly anything.
+TEST(FirstView, ASpotLightOfTheModelMayLeaveMostInTheDark) {
+  for (const float radius : {0.3f, 1.2f}) {
+    scene::Scene s;
+    addQuad(s, addMaterial(s, glm::vec3(0.6f)), {-2, -2, 0}, {4, 0, 0}, {0, 4, 0});
+    scene::Light spot;
+    spot.type = scene::LightType::Spot;
+    spot.position = {0, 0, 4};
+    spot.direction = {0, 0, -1};
+    spot.innerConeAngle = spot.outerConeAngle = std::atan(radius / 4);
+    spot.intensity = 30;
+    s.lights.push_back(spot);
+    scene::Camera camera;
+    camera.position = {0, 0, 5};
+    camera.verticalFov = 2 * std::atan(0.4f);  // the wall, and nothing beside it
+    s.cameras.push_back(camera);
+    EXPECT_EQ(scene::addFirstView(s).light, radius < 1 ? "a sun and a sky" : "") << radius;
+  }
+}
+
 // The sky stands where its sun does, and its ground looks like the floor that is added: of what the eye sees of both,
 // in the sun and far from the thing, one is as bright as the other.
 TEST(FirstView, TheGroundContinuesTheFloor) {

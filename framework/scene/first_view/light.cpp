@@ -17,15 +17,17 @@
 namespace fovea::scene {
 namespace {
 
-constexpr uint32_t kWidth = 48;                   // of the picture, pixels
-constexpr float kDark = 0.02f;                    // of the brightest light: less is not visible beside it
-constexpr float kDarkFloor = 0.1f;                // the same of a floor beside what lights itself
-constexpr float kFaint = 0.005f;                  // of what emissive surfaces emit: less than lamps give
-constexpr float kDisplay = 0.45f;                 // mean display value
-constexpr float kClipped = 0.015f;                // most of the surfaces' pixels that may be clipped
-constexpr float kDisplayInDark = 0.27f;           // the same where most of the picture stays dark with that,
-constexpr float kClippedInDark = 0.04f;           // and more may be clipped
-constexpr float kLamplight = 3.0f;                // lux, at the median distance
+constexpr uint32_t kWidth = 48;          // of the picture, pixels
+constexpr float kDark = 0.02f;           // of the brightest light: less is not visible beside it
+constexpr float kDarkFloor = 0.1f;       // the same of a floor beside what lights itself
+constexpr float kFaint = 0.005f;         // of what emissive surfaces emit: less than lamps give
+constexpr float kSeen = 0.5f;            // of the surfaces: enough to know a model by
+constexpr float kSeenByLamps = 0.1f;     // the same where the model has lights, which may mean the dark
+constexpr float kDisplay = 0.45f;        // mean display value
+constexpr float kClipped = 0.015f;       // most of the surfaces' pixels that may be clipped
+constexpr float kDisplayInDark = 0.27f;  // the same where most of the picture stays dark with that,
+constexpr float kClippedInDark = 0.04f;  // and more may be clipped
+constexpr float kLamplight = 3.0f;       // lux, at the median distance
 const glm::vec3 kBackground(0.22f, 0.33f, 0.5f);  // where there is no sky, as displayed before sRGB
 
 using Picture = std::vector<MeterPoint>;
@@ -97,11 +99,11 @@ bool mostLightsItself(const Picture& picture) {
   return own > others;
 }
 
-// Whether enough light reaches at least half of the surfaces that they can be seen beside the brightest. Emissive
+// Whether enough light reaches at least this share of the surfaces that they can be seen beside the brightest. Emissive
 // surfaces are seen in any case, and are no measure for others, as a lamp is always far brighter than the room that it
 // lights. If nothing but such surfaces gives light, however, `glow` is a measure as well: one that emits no more than a
 // white pixel and hardly lights its surroundings is a screen or a glowing sign, and no lamp.
-bool isLit(const Picture& picture, float glow) {
+bool isLit(const Picture& picture, float share, float glow) {
   std::vector<float> visible, lit;
   for (const MeterPoint& point : picture) {
     if (!(point.there > 0)) continue;
@@ -112,8 +114,8 @@ bool isLit(const Picture& picture, float glow) {
   std::ranges::sort(visible);
   std::ranges::sort(lit);
   const float bright = lit.empty() ? 0 : lit[size_t(float(lit.size()) * (1 - kClipped))];
-  const float middle = visible[visible.size() / 2];
-  return middle > 0 && middle > std::max(kDark * bright, kFaint * glow);
+  const float least = visible[size_t(float(visible.size()) * (1 - share))];  // of that share
+  return least > 0 && least > std::max(kDark * bright, kFaint * glow);
 }
 
 // Share of the surfaces in the picture that a sun in this direction lights.
@@ -180,7 +182,8 @@ std::string addFirstLight(Scene& scene, const Geometry& geometry, bool floorAdde
   const Parts parts = partsOf(scene, geometry, picture, floorAdded);
   // Lamps of the model may leave the floor in the dark.
   const bool floorCounts = scene.lights.empty() && !scene.environmentMap && mostLightsItself(parts.things);
-  if (isLit(parts.things, glow(scene, geometry)) &&
+  const float share = scene.lights.empty() ? kSeen : kSeenByLamps;
+  if (isLit(parts.things, share, glow(scene, geometry)) &&
       (!floorCounts || floorBrightness(picture, parts.floor) > kDarkFloor))
     return {};
   if (!scene.environmentMap) scene.assumedSky = findSky(picture, frame);
