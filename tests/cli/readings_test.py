@@ -49,7 +49,7 @@ class Writer:
             gap = -size % 4 + 4 * int(self.random.integers(0, 3))
             rows = b"".join(row.tobytes() + bytes(gap) for row in stored)
             entry["bufferView"] = self.view(rows, byteStride=size + gap)
-        elif self.coin() and len(values) > 2 and component == 5126:  # mostly zeros, the rest in sparse entries
+        elif self.coin() and len(values) > 2 and component == 5126:  # half of the values come from sparse entries
             used = numpy.sort(self.random.permutation(len(values))[:len(values) // 2]).astype("<u2")
             kept = stored.copy()
             kept[used] = self.random.random(kept[used].shape)
@@ -118,7 +118,8 @@ class Writer:
                 values /= numpy.linalg.norm(values, axis=1, keepdims=True)
             elif path == "rotation":
                 values[1::3] /= numpy.linalg.norm(values[1::3], axis=1, keepdims=True)
-            # Without sparse entries, whose placeholders would not be rotations.
+            # These accessors are strided, as only others get sparse entries: the values that those replace are random
+            # numbers, which are no rotations.
             animation["samplers"].append({"input": self.accessor(times, "SCALAR", strided=True, min=[0.0], max=[1.25]),
                                           "output": self.accessor(values, width, strided=True), "interpolation": kind})
             animation["channels"].append({"sampler": len(animation["samplers"]) - 1,
@@ -273,17 +274,18 @@ def read_ply(path):
 
 class Readings(CliTest):
     def exported(self, name, text):
-        self.write(name, text)
-        self.succeeds("scene", "export", name, "-o", "out", "--format", "mitsuba", "--time", str(TIME))
-        root = ElementTree.parse(next((self.folder / "out").glob("*.xml"))).getroot()
-        files = [s.get("value") for s in root.iter("string") if s.get("name") == "filename"]
-        return {material: [read_ply(self.folder / "out" / f) for f in files if f.endswith(f"_{material}.ply")]
+        """Corners of the triangles of each material's meshes at TIME, as the program exports them."""
+        self.write(f"{name}.gltf", text)
+        run = self.succeeds("scene", "export", f"{name}.gltf", "-o", name, "--format", "mitsuba", "--time", TIME)
+        file = self.folder / run.stdout.strip()
+        files = [s.get("value") for s in ElementTree.parse(file).getroot().iter("string") if s.get("name") == "filename"]
+        return {material: [read_ply(file.parent / f) for f in files if f.endswith(f"_{material}.ply")]
                 for material in ("cloth", "stone")}
 
     def test_models_are_where_numpy_has_them(self):
         for seed in range(25):
             text = Writer(seed).text()
-            meshes = self.exported(f"model{seed}.gltf", text)
+            meshes = self.exported(f"model{seed}", text)
             evaluated = Evaluator(text, TIME)
             for index, name in enumerate(("cloth", "stone")):
                 with self.subTest(seed=seed, mesh=name):

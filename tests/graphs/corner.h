@@ -1,4 +1,4 @@
-// A small scene with light of every kind, and how tests run a graph over it.
+// A small scene with every kind of light, and functions that render it with a stock graph and compare the pictures.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,8 @@ namespace fovea::test {
 
 constexpr uint32_t kSide = 40;  // of the pictures, pixels
 
-// All stock graphs with the output `radiance`: those that each run of the tests has, and the others.
+// The stock graphs with an output `radiance`. Those in kGraphs are tested in every run, and those in kOtherGraphs only
+// among the long tests.
 constexpr const char* kGraphs[] = {"direct",
                                    "ir_1000",
                                    "ours",
@@ -53,7 +54,7 @@ inline std::string nameOfGraph(const testing::TestParamInfo<const char*>& info) 
   return name;
 }
 
-// A corner under a sky, with a sun, a lamp, a spot light, and emissive and unlit surfaces.
+// A floor and a wall under a sky, lit by a sun, a point light, a spot light and an emissive panel.
 inline scene::Scene cornerInTheOpen() {
   scene::Scene s;
   s.fullMaterials = true;
@@ -97,7 +98,7 @@ inline GraphRun renderCorner(const char* graph, const scene::Scene& s) {
   return runGraph(graph, s, options);
 }
 
-// Mean over all channels of the squared difference, relative to the squared value.
+// Mean over the colours of all pixels of the squared difference, relative to the squared expected value plus 0.01.
 inline double relativeError(const std::vector<float>& values, const std::vector<float>& expected) {
   double error = 0;
   for (size_t i = 0; i < expected.size(); ++i)

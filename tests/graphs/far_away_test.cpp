@@ -1,5 +1,5 @@
-// Tests that pictures do not depend on where a scene lies: with coordinates of a map, or thousands of kilometres from the
-// origin, every graph makes the picture that it makes at the origin.
+// Tests that pictures do not depend on where a scene lies: at UTM coordinates, or 10,000 km from the origin, every graph
+// makes the same picture as at the origin.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ TEST_P(FarAway, PicturesAreThoseAtTheOrigin) {
   Diagnostics warnings;
   scene::Scene corner = cornerInTheOpen();
   corner.name = "corner";
-  corner.environmentMap = nullptr;
+  corner.environmentMap = nullptr;  // which has no place
   scene::exportGltf(corner, folder.path(), warnings);
   const auto pictureAt = [&](glm::dvec3 place) {
     const std::string text = fmt::format(

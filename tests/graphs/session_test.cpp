@@ -240,7 +240,7 @@ TEST(Session, InputsOfTheGraphAreFilled) {
       HasSubstr("no input `dark`"));
 }
 
-// Light comes in and goes out in the units of the scene, also where halves could not hold it.
+// Light is given to a graph and read back in the units of the scene, even where 16-bit floats could not hold it.
 TEST(Session, LightGoesThroughAGraphInTheUnitsOfTheScene) {
   const GraphFile file(R"({
     "inputs": { "light": { "format": "rgba16f", "light": true, "width": 2, "height": 2 } },

@@ -230,7 +230,8 @@ TEST(FirstView, LightOfTheModelStaysAloneIfItIsEnough) {
   }
 }
 
-// A stage: what a spot light of the model leaves in the dark stays dark, unless it lights hardly anything.
+// A spot light of the model is enough if it lights a tenth of what the camera sees, as on a stage. If it lights less, a
+// sun and a sky are added.
 TEST(FirstView, ASpotLightOfTheModelMayLeaveMostInTheDark) {
   for (const float radius : {0.3f, 1.2f}) {
     scene::Scene s;

@@ -21,8 +21,8 @@ constexpr uint32_t kWidth = 48;          // of the picture, pixels
 constexpr float kDark = 0.02f;           // of the brightest light: less is not visible beside it
 constexpr float kDarkFloor = 0.1f;       // the same of a floor beside what lights itself
 constexpr float kFaint = 0.005f;         // of what emissive surfaces emit: less than lamps give
-constexpr float kSeen = 0.5f;            // of the surfaces: enough to know a model by
-constexpr float kSeenByLamps = 0.1f;     // the same where the model has lights, which may mean the dark
+constexpr float kSeen = 0.5f;            // of the surfaces: the share that light has to reach
+constexpr float kSeenByLamps = 0.1f;     // the same if the model has lights: the rest may be meant to be dark
 constexpr float kDisplay = 0.45f;        // mean display value
 constexpr float kClipped = 0.015f;       // most of the surfaces' pixels that may be clipped
 constexpr float kDisplayInDark = 0.27f;  // the same where most of the picture stays dark with that,
@@ -114,7 +114,7 @@ bool isLit(const Picture& picture, float share, float glow) {
   std::ranges::sort(visible);
   std::ranges::sort(lit);
   const float bright = lit.empty() ? 0 : lit[size_t(float(lit.size()) * (1 - kClipped))];
-  const float least = visible[size_t(float(visible.size()) * (1 - share))];  // of that share
+  const float least = visible[size_t(float(visible.size()) * (1 - share))];  // on the brightest such share
   return least > 0 && least > std::max(kDark * bright, kFaint * glow);
 }
 
