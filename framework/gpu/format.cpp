@@ -140,6 +140,21 @@ std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> te
               "texels of format " + std::string(info.name) + " have no conversion to floats");
 }
 
+std::vector<std::byte> floatsToTexels(VkFormat format, std::span<const float> values) {
+  const FormatInfo& info = formatInfo(format);
+  const bool half = info.bytesPerTexel / info.channels == 2;
+  std::vector<std::byte> texels(values.size() * (half ? 2 : 4));
+  if (!half) {
+    std::memcpy(texels.data(), values.data(), texels.size());
+    return texels;
+  }
+  for (size_t i = 0; i < values.size(); ++i) {
+    const uint16_t stored = glm::packHalf1x16(values[i]);
+    std::memcpy(&texels[2 * i], &stored, sizeof stored);
+  }
+  return texels;
+}
+
 VkFormat floatFormat(uint32_t channels) {
   constexpr VkFormat kFormats[] = {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32_SFLOAT,
                                    VK_FORMAT_R32G32B32A32_SFLOAT};

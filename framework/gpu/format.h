@@ -39,4 +39,7 @@ bool holdsLight(VkFormat format);
 // sRGB curve), snorm to [-1, 1]. Throws Error(Internal) for integer and packed formats.
 std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> texels);
 
+// The inverse for formats that hold light (holdsLight()).
+std::vector<std::byte> floatsToTexels(VkFormat format, std::span<const float> values);
+
 }  // namespace fovea::gpu

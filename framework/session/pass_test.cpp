@@ -73,13 +73,7 @@ void fromReplaced(VkFormat format, graph::OutputData& output) {
 
 // Light is read back as 32-bit floats; tests see the texels as the pass stores them, to the bit.
 void toStoredLight(VkFormat format, graph::OutputData& output) {
-  const gpu::FormatInfo& info = gpu::formatInfo(format);
-  if (info.bytesPerTexel / info.channels == 4) return;
-  const std::vector<float> values = gpu::texelsToFloats(output.desc.format, output.bytes);
-  std::vector<uint16_t> texels(values.size());
-  std::ranges::transform(values, texels.begin(), [](float v) { return glm::packHalf1x16(v); });
-  const auto bytes = std::as_bytes(std::span(texels));
-  output.bytes.assign(bytes.begin(), bytes.end());
+  output.bytes = gpu::floatsToTexels(format, gpu::texelsToFloats(output.desc.format, output.bytes));
   output.desc.format = format;
 }
 

@@ -1,5 +1,5 @@
-"""Random glTF models as fovea flattens them, beside what a plain evaluator makes of the same files with numpy: accessors,
-nodes, morph targets, skins and animations as the specification has them. Usage: readings_test.py PROGRAM SOURCE_DIR"""
+"""Compares random glTF models as fovea flattens them with what a plain evaluator makes of the same files with numpy:
+accessors, nodes, morph targets, skins and animations as the specification has them. Usage: readings_test.py PROGRAM SOURCE_DIR"""
 
 import base64
 import json
@@ -32,7 +32,8 @@ class Writer:
 
     def view(self, content, **more):
         self.data += bytes(-len(self.data) % 4)
-        self.model["bufferViews"].append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(content), **more})
+        self.model["bufferViews"].append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(content),
+                                          **more})
         self.data += content
         return len(self.model["bufferViews"]) - 1
 
@@ -278,7 +279,8 @@ class Readings(CliTest):
         self.write(f"{name}.gltf", text)
         run = self.succeeds("scene", "export", f"{name}.gltf", "-o", name, "--format", "mitsuba", "--time", TIME)
         file = self.folder / run.stdout.strip()
-        files = [s.get("value") for s in ElementTree.parse(file).getroot().iter("string") if s.get("name") == "filename"]
+        root = ElementTree.parse(file).getroot()
+        files = [s.get("value") for s in root.iter("string") if s.get("name") == "filename"]
         return {material: [read_ply(file.parent / f) for f in files if f.endswith(f"_{material}.ply")]
                 for material in ("cloth", "stone")}
 

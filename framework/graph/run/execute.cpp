@@ -316,7 +316,10 @@ void Executor::setInput(const std::string& name, std::span<const std::byte> byte
                       std::to_string(bytes.size()),
                   resource.desc.light > 0 ? "light is given as 32-bit floats" : "");
     std::vector<std::byte> stored;
-    if (resource.desc.light > 0) bytes = stored = inStoredUnits(resource.desc, bytes, preExposure);
+    if (resource.desc.light > 0) {
+      stored = inStoredUnits(resource.desc, bytes, preExposure);
+      bytes = stored;
+    }
     impl_->device.waitIdle();
     if (resource.desc.kind == ResourceKind::Image)
       gpu::upload(impl_->device, impl_->state.resources[i].images[0], bytes, impl_->plan->startLayout[i][0]);

@@ -90,9 +90,9 @@ class Executor {
            scene::FrameDescriptors& scene, const ExecutorOptions& options = {}, Executor* before = nullptr);
   ~Executor();
 
-  // Sets the contents of an input of the whole graph ("radiance", "surface.position"), which are kept until set
-  // again: its texels or elements, tightly packed. Light ("light": true) is given as 32-bit floats in the units of the
-  // scene, whose Frame::preExposure is `preExposure`. Waits for the device. Throws Error(BadInput) for an input that
+  // Sets the contents of an input of the whole graph ("radiance", "surface.position"), which stay until they are set
+  // again. `bytes` are its texels or elements, tightly packed, or for light ("light": true) 32-bit floats in the units
+  // of the scene; `preExposure` is Frame::preExposure of that scene. Waits for the device. Throws Error(BadInput) for an input that
   // the graph does not have, or another number of bytes.
   void setInput(const std::string& name, std::span<const std::byte> bytes, float preExposure = 1);
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <glm/gtc/packing.hpp>
 #include <limits>
 
 #include "framework/gpu/format.h"
@@ -21,20 +19,11 @@ bool isHalf(VkFormat format) {
   return info.bytesPerTexel / info.channels == sizeof(uint16_t);
 }
 
-std::vector<std::byte> bytesOf(const auto& values) {
-  const auto bytes = std::as_bytes(std::span(values));
-  return {bytes.begin(), bytes.end()};
-}
-
-// Multiplies the rgb of texels by `unit`, and counts those that `counts` is true for beforehand.
-uint64_t scale(std::vector<float>& values, uint32_t channels, float unit, const auto& counts) {
-  uint64_t counted = 0;
-  for (size_t texel = 0; texel < values.size(); texel += channels) {
-    const std::span<float> light(&values[texel], std::min(channels, 3u));
-    counted += std::ranges::any_of(light, counts);
-    for (float& v : light) v *= unit;
-  }
-  return counted;
+// Calls `visit` with the rgb of each texel.
+void forEachColor(std::vector<float>& values, VkFormat format, const auto& visit) {
+  const uint32_t channels = gpu::formatInfo(format).channels;
+  for (size_t texel = 0; texel < values.size(); texel += channels)
+    visit(std::span<float>(&values[texel], std::min(channels, 3u)));
 }
 
 }  // namespace
@@ -47,14 +36,17 @@ OutputData inSceneUnits(const ResourceDesc& desc, std::span<const std::byte> tex
     return data;
   }
   std::vector<float> values = gpu::texelsToFloats(desc.format, texels);
-  const uint32_t channels = gpu::formatInfo(desc.format).channels;
+  const float unit = std::pow(preExposure, -float(desc.light));
   // Devices store what is too bright as the greatest number or as infinity.
   const float greatest = isHalf(desc.format) ? kGreatestHalf : std::numeric_limits<float>::max();
-  data.beyondRange = scale(values, channels, std::pow(preExposure, -float(desc.light)),
-                           [&](float v) { return !(v < greatest); });
+  forEachColor(values, desc.format, [&](std::span<float> color) {
+    data.beyondRange += !std::ranges::all_of(color, [&](float v) { return v < greatest; });
+    for (float& v : color) v *= unit;
+  });
   data.desc.light = 0;
-  data.desc.format = gpu::floatFormat(channels);
-  data.bytes = bytesOf(values);
+  data.desc.format = gpu::floatFormat(gpu::formatInfo(desc.format).channels);
+  const auto bytes = std::as_bytes(std::span(values));
+  data.bytes.assign(bytes.begin(), bytes.end());
   return data;
 }
 
@@ -64,16 +56,15 @@ uint64_t givenBytes(const ResourceDesc& desc) {
 
 std::vector<std::byte> inStoredUnits(const ResourceDesc& desc, std::span<const std::byte> given,
                                      float preExposure) {
-  std::vector<float> values(given.size() / sizeof(float));
-  std::memcpy(values.data(), given.data(), values.size() * sizeof(float));
-  scale(values, gpu::formatInfo(desc.format).channels, std::pow(preExposure, float(desc.light)),
-        [](float) { return false; });
-  if (!isHalf(desc.format)) return bytesOf(values);
-  std::vector<uint16_t> halves(values.size());
-  std::ranges::transform(values, halves.begin(), [](float v) {
-    return glm::packHalf1x16(std::clamp(v, -kGreatestHalf, kGreatestHalf));
+  std::vector<float> values =
+      gpu::texelsToFloats(gpu::floatFormat(gpu::formatInfo(desc.format).channels), given);
+  const float unit = std::pow(preExposure, float(desc.light));
+  forEachColor(values, desc.format, [&](std::span<float> color) {
+    for (float& v : color) v *= unit;
   });
-  return bytesOf(halves);
+  if (isHalf(desc.format))
+    for (float& v : values) v = std::clamp(v, -kGreatestHalf, kGreatestHalf);
+  return gpu::floatsToTexels(desc.format, values);
 }
 
 }  // namespace fovea::graph

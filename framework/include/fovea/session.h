@@ -70,7 +70,8 @@ class Session {
 
   // Fills an input of the graph itself ("radiance", "surface.position"), until it is filled again. `bytes` are those of
   // OutputData::bytes: texels or elements, tightly packed, in the format that the graph declares; of images with
-  // "light": true, 32-bit floats in the units of the scene, whatever their format is. Waits for the device.
+  // "light": true, 32-bit floats in the units of the scene, whatever their format is. Light beyond the range of that
+  // format becomes the brightest that fits. Waits for the device.
   // Throws Error(BadInput) for an input that the graph does not have, or another number of bytes.
   void setInput(const std::string& name, std::span<const std::byte> bytes);
 
