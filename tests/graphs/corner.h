@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "framework/scene/environment/environment_map.h"
+#include "places.h"
 #include "tests/support/graph_run.h"
 #include "tests/support/shapes.h"
 
@@ -17,40 +19,32 @@ namespace fovea::test {
 
 constexpr uint32_t kSide = 40;  // of the pictures, pixels
 
-// The stock graphs with an output `radiance`. Those in kGraphs are tested in every run, and those in kOtherGraphs only
-// among the long tests.
-constexpr const char* kGraphs[] = {"direct",
-                                   "ir_1000",
-                                   "ours",
-                                   "foveal",
-                                   "foveal_stereo",
-                                   "reference",
-                                   "alternatives/ddgi",
-                                   "alternatives/vxgi",
-                                   "alternatives/restir_gi"};
-constexpr const char* kOtherGraphs[] = {"foveal_no_near_field",
-                                        "foveal_no_shadow_rays",
-                                        "foveal_view",
-                                        "foveal_voxel_paths",
-                                        "ir_accumulated",
-                                        "ir_eq",
-                                        "ir_fixed_seed",
-                                        "ir_stereo",
-                                        "ir_v",
-                                        "ir_v_accumulated",
-                                        "ours_cosine",
-                                        "ours_r",
-                                        "ours_saccades",
-                                        "ours_unclamped",
-                                        "stereo",
-                                        "alternatives/ddgi_foveated",
-                                        "alternatives/ddgi_two_bounces",
-                                        "alternatives/pt_denoised",
-                                        "alternatives/restir_gi_foveated"};
+// The stock graphs that are tested in every run; the others are tested only among the long tests.
+inline const std::vector<std::string> kGraphs{"direct",
+                                              "ir_1000",
+                                              "ours",
+                                              "foveal",
+                                              "foveal_stereo",
+                                              "reference",
+                                              "alternatives/ddgi",
+                                              "alternatives/vxgi",
+                                              "alternatives/restir_gi"};
+inline std::vector<std::string> otherGraphs() {
+  std::vector<std::string> names;
+  for (const std::string folder : {"", "alternatives/"})
+    for (const auto& entry : std::filesystem::directory_iterator(FOVEA_SOURCE_DIR "/graphs/" + folder)) {
+      const std::string name = folder + entry.path().stem().string();
+      if (entry.path().extension() == ".json" && name != "fovea-graph.schema" &&
+          std::ranges::find(kGraphs, name) == kGraphs.end())
+        names.push_back(name);
+    }
+  std::ranges::sort(names);
+  return names;
+}
 
-inline std::string nameOfGraph(const testing::TestParamInfo<const char*>& info) {
+inline std::string nameOfGraph(const testing::TestParamInfo<std::string>& info) {
   std::string name = info.param;
-  std::replace(name.begin(), name.end(), '/', '_');
+  std::ranges::replace(name, '/', '_');
   return name;
 }
 
@@ -81,12 +75,11 @@ inline scene::Scene cornerInTheOpen() {
   return s;
 }
 
-inline GraphRun renderCorner(const char* graph, const scene::Scene& s) {
+inline GraphRun renderCorner(const std::string& name, const scene::Scene& s) {
   GraphRunOptions options;
   options.size = {kSide, kSide};
   options.frames = 3;
   options.set = {"vpl_count=100", "map_size=32", "shadow_map_size=128", "voxels=32", "spp=8"};
-  const std::string name = graph;
   std::erase_if(options.set, [&](const std::string& set) {
     const bool vpls = name != "direct" && name != "reference" && !name.starts_with("alternatives/");
     if (set.starts_with("spp")) return name != "reference";
@@ -95,7 +88,7 @@ inline GraphRun renderCorner(const char* graph, const scene::Scene& s) {
     return !vpls;
   });
   options.outputs = {"radiance"};
-  return runGraph(graph, s, options);
+  return runGraph(name, s, options);
 }
 
 // Mean over the colours of all pixels of the squared difference, relative to the squared expected value plus 0.01.

@@ -11,7 +11,7 @@
 namespace fovea::test {
 namespace {
 
-class FarAway : public testing::TestWithParam<const char*> {};
+class FarAway : public testing::TestWithParam<std::string> {};
 
 TEST_P(FarAway, PicturesAreThoseAtTheOrigin) {
   const TemporaryFolder folder;
@@ -32,7 +32,7 @@ TEST_P(FarAway, PicturesAreThoseAtTheOrigin) {
   ASSERT_GT(relativeError(std::vector<float>(here.size(), 0), here), 0.1);  // it shows something
   for (const glm::dvec3 place :
        {glm::dvec3(54000.1, 0, 0), glm::dvec3(448262.125, 12.5, -5411932.25), glm::dvec3(1e7, -1e7, 1e7)})
-    EXPECT_LT(relativeError(pictureAt(place), here), 1e-3) << place.x << " " << place.y << " " << place.z;
+    EXPECT_LT(relativeError(pictureAt(place), here), 3e-4) << place.x << " " << place.y << " " << place.z;
 }
 
 INSTANTIATE_TEST_SUITE_P(Graphs, FarAway, testing::Values("direct", "foveal"), nameOfGraph);
@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(LongGraphs, FarAway,
                          testing::Values("ir_1000", "ours", "reference", "foveal_stereo", "alternatives/ddgi",
                                          "alternatives/vxgi", "alternatives/restir_gi"),
                          nameOfGraph);
-INSTANTIATE_TEST_SUITE_P(LongOtherGraphs, FarAway, testing::ValuesIn(kOtherGraphs), nameOfGraph);
+INSTANTIATE_TEST_SUITE_P(LongOtherGraphs, FarAway, testing::ValuesIn(otherGraphs()), nameOfGraph);
 
 }  // namespace
 }  // namespace fovea::test

@@ -21,7 +21,7 @@ scene::Scene brighter(scene::Scene s, float factor) {
   return s;
 }
 
-class LightRange : public testing::TestWithParam<const char*> {};
+class LightRange : public testing::TestWithParam<std::string> {};
 
 // Powers of two change no mantissa, so pictures are equal to the bit; other factors round.
 TEST_P(LightRange, PicturesDoNotDependOnTheUnitOfLight) {
@@ -47,7 +47,7 @@ TEST_P(LightRange, PicturesDoNotDependOnTheUnitOfLight) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Graphs, LightRange, testing::ValuesIn(kGraphs), nameOfGraph);
-INSTANTIATE_TEST_SUITE_P(LongGraphs, LightRange, testing::ValuesIn(kOtherGraphs), nameOfGraph);
+INSTANTIATE_TEST_SUITE_P(LongGraphs, LightRange, testing::ValuesIn(otherGraphs()), nameOfGraph);
 
 // What passes store is the scene's light times a power of two, whatever its exposure.
 TEST(PreExposure, IsThePowerOfTwoNearestToTheExposure) {
