@@ -101,25 +101,27 @@ uint64_t bytesRead(std::istream& in, const std::string& type, uint64_t size) {
   return size;
 }
 
-// What decides how much memory OpenEXR reserves for one block of a part's pixels as it opens the file.
+// What decides how much memory OpenEXR reserves for one block of a part's pixels as it opens the file, and whether
+// OpenImageIO knows its values.
 struct Block {
   uint64_t columns = 0, rows = 0, bytesPerPixel = 0;
   bool tiled = false;
   uint64_t tileColumns = 0, tileRows = 0;
-  uint64_t lines = 1;  // of a compressed block without tiles
+  uint64_t lines = 1;   // of a compressed block without tiles
+  std::string unknown;  // the name of a channel with values of an unknown type
   uint64_t bytes() const { return (tiled ? tileColumns * tileRows : columns * lines) * bytesPerPixel; }
 };
 
 constexpr uint64_t kMostOfBlock = uint64_t(1) << 25;  // bytes; OpenEXR has two blocks for each thread
 
-uint64_t bytesPerPixel(std::istream& channels) {
-  uint64_t bytes = 0;
+void addChannels(Block& block, std::istream& channels) {
   for (std::string name; std::getline(channels, name, '\0') && !name.empty();) {
-    constexpr uint32_t kHalf = 1;
-    bytes += littleEndian(channels) == kHalf ? 2 : 4;
+    constexpr uint32_t kHalf = 1, kTypes = 3;  // unsigned integers, halves and floats
+    const uint32_t type = littleEndian(channels);
+    block.bytesPerPixel += type == kHalf ? 2 : 4;
+    if (type >= kTypes) block.unknown = name;
     channels.ignore(12);  // flags, and how sparse its samples are
   }
-  return bytes;
 }
 
 // By the number that a header gives to a compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
@@ -136,7 +138,7 @@ void addTo(Block& block, const std::string& name, std::istream& in) {
     block.columns = uint64_t(std::max<int64_t>(corners[2] - corners[0] + 1, 0));
     block.rows = uint64_t(std::max<int64_t>(corners[3] - corners[1] + 1, 0));
   } else if (name == "channels") {
-    block.bytesPerPixel = bytesPerPixel(in);
+    addChannels(block, in);
   } else if (name == "compression") {
     block.lines = linesOfBlock(in.get());
   } else if (name == "type") {  // of one of several parts; a single part has a flag instead
@@ -149,7 +151,8 @@ void addTo(Block& block, const std::string& name, std::istream& in) {
   }
 }
 
-std::string whyTooLarge(const Block& block) {
+std::string whyForged(const Block& block) {
+  if (!block.unknown.empty()) return "its channel `" + block.unknown + "` has values of an unknown type";
   if (std::max(block.columns, block.rows) > codec::kMaxSide)
     return "its `dataWindow` is longer than any picture";
   if (std::max(block.tileColumns, block.tileRows) > codec::kMaxSide)
@@ -191,7 +194,7 @@ std::string whyForged(std::istream& exr) {
       exr.seekg(std::streamoff(begin + size));
     }
     if (!severalParts) block.tiled = tiled;
-    if (const std::string reason = whyTooLarge(block); !reason.empty()) return reason;
+    if (const std::string reason = whyForged(block); !reason.empty()) return reason;
   } while (severalParts && exr.peek() > 0);
   return {};
 }

@@ -25,8 +25,9 @@ std::optional<HeaderSize> headerSize(std::span<const uint8_t> bytes);
 std::string whyTooPlain(uint64_t pixels, uint64_t bytes);
 
 // Why an EXR file is not read: an attribute of its header claims another size than it has, or the header claims a side
-// of more than codec::kMaxSide pixels or blocks of more than 32 MiB; else "". OpenEXR reserves and clears what a
-// header claims, up to several GiB, before it notices. What else is wrong with the file is left to OpenEXR.
+// of more than codec::kMaxSide pixels, blocks of more than 32 MiB or channels of an unknown type; else "". OpenEXR
+// reserves and clears what a header claims, up to several GiB, before it notices, and OpenImageIO aborts at types that
+// it does not know. What else is wrong with the file is left to them.
 std::string whyForged(std::istream& exr);
 
 // What the header of an EXR file says about one of its parts. Only headers to which whyForged() has no objection may be

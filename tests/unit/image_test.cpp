@@ -390,6 +390,15 @@ TEST(ImageHeaders, ForgedSizesOfExrAttributesAreFound) {
   EXPECT_EQ(window(-5, 32762), "");
   EXPECT_THAT(window(-5, 32763), HasSubstr("longer than any picture"));
   EXPECT_NE(window(0x80000000, 0x7fffffff), "");
+  // OpenImageIO aborts at channels whose values have an unknown type.
+  const auto channelOf = [](uint32_t type) {
+    const std::string list = std::string("c") + '\0' + littleEndian(type) + std::string(12, '\0') + '\0';
+    std::string bytes = exrHeader("chlist", uint32_t(list.size()), list);
+    return bytes.replace(bytes.find("thing"), 5, "channels");
+  };
+  for (const uint32_t type : {0u, 1u, 2u}) EXPECT_EQ(forged(channelOf(type)), "");
+  for (const uint32_t type : {3u, 0xffffff02u})
+    EXPECT_THAT(forged(channelOf(type)), HasSubstr("channel `c` has values of an unknown type"));
   // A second part.
   const std::string second = exrHeader("string", 100, eight).substr(8);
   EXPECT_EQ(forged(exrHeader("string", 8, eight) + second), "");
