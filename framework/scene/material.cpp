@@ -45,4 +45,11 @@ glm::vec3 emission(const Scene& scene, const Material& material, glm::vec2 uv) {
   return material.emission * glm::vec3(sampleTexture(scene, material.emissionTexture, uv));
 }
 
+float coverage(const Scene& scene, const Material& material, glm::vec2 uv, float alpha, bool fullMaterials) {
+  if (!material.masked) return 1;
+  const float all = alpha * reflectance(scene, material, uv).a;
+  if (fullMaterials && material.blended) return glm::clamp(all, 0.0f, 1.0f);
+  return all >= material.alphaCutoff ? 1.0f : 0.0f;
+}
+
 }  // namespace fovea::scene

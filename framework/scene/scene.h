@@ -22,6 +22,9 @@ glm::vec4 sampleTexture(const Scene& scene, const TextureUse& use, glm::vec2 uv)
 // Diffuse reflectance and alpha of a material at uv.
 glm::vec4 reflectance(const Scene& scene, const Material& material, glm::vec2 uv);
 glm::vec3 emission(const Scene& scene, const Material& material, glm::vec2 uv);
+// The share of a surface that is seen at uv: 0 in the holes of alpha masks, alpha of BLEND with full materials, else 1.
+// alpha: of the vertex colours.
+float coverage(const Scene& scene, const Material& material, glm::vec2 uv, float alpha, bool fullMaterials);
 
 // Whether a part of the light goes straight through, with full materials. Holes of alpha masks are no part of this.
 inline bool letsLightThrough(const Material& m) { return m.blended || m.transmission > 0; }

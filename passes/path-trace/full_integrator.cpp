@@ -169,7 +169,7 @@ glm::vec3 FullIntegrator::emitterLight(const Vertex& v, float choice, float u1, 
   const float cosineEmitter = -glm::dot(p.normal, w);
   if (cosineEmitter <= 0) return glm::vec3(0);
   const glm::vec3 radiance = materials_.emission(p.hit) * reflected(v, w);
-  if (radiance == glm::vec3(0)) return glm::vec3(0);
+  if (radiance == glm::vec3(0) || !rays_.isSolid(p.hit)) return glm::vec3(0);
   const float density = emitterShare_ * p.density * d2 / cosineEmitter;  // per sr
   return radiance * visibility(ray, rays) / (density + v.bsdf.density(toLocal(v.frame, w)));
 }

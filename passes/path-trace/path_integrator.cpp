@@ -210,7 +210,7 @@ glm::vec3 PathIntegrator::emitterLight(const PathVertex& v, float choice, float 
   const float cosine = glm::dot(v.normal, w), cosineEmitter = -glm::dot(p.normal, w);
   if (cosine <= 0 || cosineEmitter <= 0 || glm::dot(v.face, w) <= 0) return glm::vec3(0);
   const glm::vec3 radiance = emittedRadiance(*frame_.scene, frame_.scene->materials[p.material], p.uv);
-  if (radiance == glm::vec3(0)) return glm::vec3(0);
+  if (radiance == glm::vec3(0) || !rays_.isSolid(p.hit)) return glm::vec3(0);
   ray.far = kShadowEnd;
   if (occluded(ray, rays)) return glm::vec3(0);
   const float density = emitterShare_ * p.density * d2 / cosineEmitter;  // per sr

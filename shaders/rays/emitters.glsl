@@ -7,6 +7,7 @@
 #ifndef FOVEA_RAYS_EMITTERS_GLSL
 #define FOVEA_RAYS_EMITTERS_GLSL
 
+#include "materials/passage.glsl"
 #include "rays/trace.glsl"
 #include "records/emitters.h"
 
@@ -113,6 +114,14 @@ struct EmitterPoint {
 
 CONSTANT EmitterPoint kNoEmitterPoint = EmitterPoint(kNoTriangle, vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 
+// The radiance of a point on an emissive triangle, W/(sr m^2), as far as the surface is seen: not in the holes of alpha
+// masks, and with alphaMode BLEND by alpha. weights: barycentric, of the second and third vertex.
+vec3 emittedAt(uvec4 triangle, vec2 weights) {
+  uint material = materialOf(triangle);
+  vec2 uv = uvAt(triangle, weights);
+  return materialEmission(material, uv) * coverage(material, uv, alphaAt(triangle, weights));
+}
+
 // A point of an emitter, on its front. u: uniform in [0, 1).
 EmitterPoint pointOn(Emitter e, vec2 u) {
   float root = sqrt(u.x);
@@ -120,8 +129,7 @@ EmitterPoint pointOn(Emitter e, vec2 u) {
   uvec4 triangle = sceneTriangle(e.triangle);
   vec3 position = mat3(scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z)) *
                   vec3(1.0 - weights.x - weights.y, weights);
-  vec3 radiance = materialEmission(materialOf(triangle), uvAt(triangle, weights));
-  return EmitterPoint(e.triangle, position, e.normal, radiance, 1.0 / e.area);
+  return EmitterPoint(e.triangle, position, e.normal, emittedAt(triangle, weights), 1.0 / e.area);
 }
 
 // A random point that may light the receiver; it may be occluded. choice, u: uniform in [0, 1). The choice is rescaled

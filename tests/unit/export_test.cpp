@@ -14,6 +14,7 @@
 #include "framework/scene/scene.h"
 #include "framework/scene/subdivision/subdivision.h"
 #include "scene_support.h"
+#include "tests/support/shapes.h"
 
 namespace fovea::test {
 namespace {
@@ -386,6 +387,40 @@ TEST(ExportMitsuba, FullMaterialsAndWhatTheyLack) {
   EXPECT_THAT(warnings.format(),
               HasSubstr("`leaf` is written without transmission, clearcoat, specular, the second texture"));
   EXPECT_THAT(warnings.format(), HasSubstr("`lamp` is written without unlit"));
+}
+
+// Mitsuba shows all light of an emitter whatever its opacity, so the radiance contains that.
+TEST(ExportMitsuba, EmissiveSurfacesShineAsFarAsTheyAreSeen) {
+  Scene s;
+  s.materials.resize(1);
+  s.materials[0].emission = {2, 1, 4};
+  s.materials[0].baseColor.a = 0.25f;
+  s.materials[0].masked = s.materials[0].blended = true;
+  addQuad(s, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  const auto xml = [&](bool full) {
+    const TemporaryFolder folder;
+    Diagnostics warnings;
+    MitsubaOptions options;
+    options.full = full;
+    return content(exportMitsuba(s, folder.path(), options, warnings));
+  };
+  EXPECT_THAT(xml(true), HasSubstr(R"(<rgb name="radiance" value="0.5, 0.25, 1"/>)"));
+  EXPECT_THAT(xml(false), HasSubstr(R"(<rgb name="radiance" value="0, 0, 0"/>)"));
+
+  s.textures = {{"leaf", 2, 1, true, {255, 255, 255, 255, 255, 255, 255, 0}}};
+  s.materials[0].baseColor.a = 1;
+  s.materials[0].baseColorTexture = {.texture = 0, .nearest = true};
+  const TemporaryFolder folder;
+  Diagnostics warnings;
+  const std::string text = content(exportMitsuba(s, folder.path(), {}, warnings));
+  const size_t end = text.find("_radiance.exr"), begin = text.rfind("textures/", end);
+  ASSERT_NE(end, std::string::npos);
+  const image::File file = image::read(folder.path() / (text.substr(begin, end - begin) + "_radiance.exr"));
+  const image::Image& radiance = file.layers.at(0).image;
+  for (uint32_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(radiance.at(radiance.width / 4, 0, c), s.materials[0].emission[int(c)]);
+    EXPECT_EQ(radiance.at(3 * radiance.width / 4, 0, c), 0);
+  }
 }
 
 // The image that a spot light projects holds the falloff; looked up bilinearly, it gives the falloff of the light.

@@ -293,8 +293,7 @@ class MitsubaWriter {
       const Material& m = scene_.materials[group.second];
       std::string emitter;
       if (m.emission != glm::vec3(0))
-        emitter = "<emitter type=\"area\">" + materials_.colour("radiance", m.emissionTexture, m.emission) +
-                  "</emitter>";
+        emitter = "<emitter type=\"area\">" + materials_.radiance(m) + "</emitter>";
       const bool twice = !emitter.empty() && m.doubleSided;  // Mitsuba's surfaces emit from their front only
       const float shift = twice ? 0.5e-5f * diagonal : 0.0f;
       for (int side = 0; side < (twice ? 2 : 1); ++side) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <functional>
 #include <utility>
 
 namespace fovea::scene {
@@ -134,30 +133,46 @@ std::string MitsubaMaterials::channel(const char* name, const TextureUse& use, u
   return bitmap(name, file, true, filterOf(use), from.wrap, toUv(use, from.scale));
 }
 
-// Whether bilinear alpha reaches the cutoff, or with alphaMode BLEND that alpha itself, at the middles of at least
-// kMaskTexels^2 parts of each texel.
-std::string MitsubaMaterials::opacity(const Material& m) {
+// What a material has at each place of its base colour's texture, at the middles of at least kMaskTexels^2 parts of each
+// texel. It lies at its own place in the texture, so that it covers one period and wraps as the texture does.
+std::string MitsubaMaterials::baked(const char* name, const Material& m, const std::string& suffix,
+                                    uint32_t channels, const std::function<glm::vec3(glm::vec2)>& valueAt) {
   const TextureUse& use = m.baseColorTexture;
-  const auto opacityOf = [&](float alpha) {
-    if (full_ && m.blended) return std::clamp(alpha, 0.0f, 1.0f);
-    return alpha >= m.alphaCutoff ? 1.0f : 0.0f;
-  };
-  if (!textured(use)) return number("opacity", opacityOf(m.baseColor.a));
   const Texture& t = scene_.textures[use.texture];
   uint32_t parts = std::max(kMaskTexels, kMaskSide / std::max(t.width, t.height));
   while (parts > 1 && std::max(t.width, t.height) * parts > kMaxMaskSide) parts /= 2;
-  // At its own place in the texture, so that the mask lies in one period and wraps as the texture does.
   const Unfolded from = unfold(t, use.wrapU, use.wrapV);
   const glm::uvec2 size = glm::uvec2(from.texture.width, from.texture.height) * parts;
-  image::Image mask{size.x, size.y, 1, std::vector<float>(size_t(size.x) * size.y)};
+  image::Image pixels{size.x, size.y, channels, std::vector<float>(size_t(size.x) * size.y * channels)};
   for (uint32_t y = 0; y < size.y; ++y)
     for (uint32_t x = 0; x < size.x; ++x) {
       const glm::vec2 uv = (glm::vec2(x, y) + 0.5f) / glm::vec2(size) / from.scale;
-      mask.at(x, y, 0) = opacityOf(reflectance(scene_, m, straightUv(uv, use)).a);
+      const glm::vec3 value = valueAt(straightUv(uv, use));
+      for (uint32_t c = 0; c < channels; ++c) pixels.at(x, y, c) = value[int(c)];
     }
-  const std::string file = textureFile(use, "_mask.png");
-  image::write(folder_ / file, {{"", std::move(mask)}});
-  return bitmap("opacity", file, true, "nearest", from.wrap, toUv(use, from.scale));
+  const std::string file = textureFile(use, suffix);
+  image::write(folder_ / file, {{"", std::move(pixels)}});
+  return bitmap(name, file, true, "nearest", from.wrap, toUv(use, from.scale));
+}
+
+// Whether bilinear alpha reaches the cutoff, or with alphaMode BLEND that alpha itself.
+std::string MitsubaMaterials::opacity(const Material& m) {
+  const auto opacityAt = [&](glm::vec2 uv) { return coverage(scene_, m, uv, 1, full_); };
+  if (!textured(m.baseColorTexture)) return number("opacity", opacityAt({}));
+  return baked("opacity", m, "_mask.png", 1, [&](glm::vec2 uv) { return glm::vec3(opacityAt(uv)); });
+}
+
+// Mitsuba shows the light of an emitter whatever the opacity of its surface, so its radiance contains that.
+std::string MitsubaMaterials::radiance(const Material& m) {
+  if (!m.masked) return colour("radiance", m.emissionTexture, m.emission);
+  if (!textured(m.baseColorTexture))
+    return colour("radiance", m.emissionTexture, m.emission * coverage(scene_, m, {}, 1, full_));
+  if (textured(m.emissionTexture) && m.emissionTexture.transform != m.baseColorTexture.transform)
+    warn("material `" + m.name +
+         "` has its emissive texture in another place than its alpha, and in Mitsuba it " +
+         "repeats with the latter");
+  return baked("radiance", m, "_radiance.exr", 3,
+               [&](glm::vec2 uv) { return emission(scene_, m, uv) * coverage(scene_, m, uv, 1, full_); });
 }
 
 std::string MitsubaMaterials::bsdf(uint32_t index) {

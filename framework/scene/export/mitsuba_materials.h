@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -21,15 +22,18 @@ class MitsubaMaterials {
   MitsubaMaterials(const Scene& scene, std::filesystem::path folder, bool full, UniqueNames& names,
                    Diagnostics& warnings);
 
-  // The element of a material; its id is "m" and the index. Throws Error(CannotWrite), as colour() does.
+  // The element of a material; its id is "m" and the index. Throws Error(CannotWrite), as radiance() does.
   std::string bsdf(uint32_t index);
-  // The element of a colour times a texture.
-  std::string colour(const char* name, const TextureUse& use, const glm::vec3& factor);
+  // The element `radiance` of an emissive material, W/(sr m^2).
+  std::string radiance(const Material& m);
 
  private:
+  std::string colour(const char* name, const TextureUse& use, const glm::vec3& factor);
   bool textured(const TextureUse& use) const { return use && use.texture < scene_.textures.size(); }
   std::string textureFile(const TextureUse& use, const std::string& suffix);
   std::string channel(const char* name, const TextureUse& use, uint32_t channel, float factor);
+  std::string baked(const char* name, const Material& m, const std::string& suffix, uint32_t channels,
+                    const std::function<glm::vec3(glm::vec2)>& valueAt);
   std::string opacity(const Material& m);
   std::string fullBsdf(const Material& m);
   std::string dielectric(const Material& m);

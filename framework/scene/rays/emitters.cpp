@@ -10,15 +10,28 @@ namespace {
 
 constexpr uint32_t kInLeaf = kEmittersInLeaf;
 
-// Mean over the channels and a few points. It only affects how often the triangle is chosen; the radiance of
-// a point is exact.
-double estimatedRadiance(const Frame& frame, uint32_t triangle, const Material& material) {
+float vertexAlpha(const Geometry& g, uint32_t triangle, float u, float v) {
+  if (g.colors.empty()) return 1;
+  const uint32_t* corners = g.triangles[triangle].v;
+  return g.colors[corners[0]].a * (1 - u - v) + g.colors[corners[1]].a * u + g.colors[corners[2]].a * v;
+}
+
+// Mean over the channels and a few points, as far as the surface is seen there. It only affects how often the triangle
+// is chosen; the radiance of a point is exact.
+double estimatedRadiance(const Frame& frame, uint32_t triangle, const Material& material,
+                         bool fullMaterials) {
   constexpr float kPoints[4][2] = {{1 / 3.f, 1 / 3.f}, {0.15f, 0.7f}, {0.7f, 0.15f}, {0.15f, 0.15f}};
+  const Geometry& g = *frame.geometry;
   glm::vec3 sum(0);
-  for (const auto& p : kPoints)
-    sum += 0.25f * emission(*frame.scene, material, surfaceAt(*frame.geometry, {triangle, 0, p[0], p[1]}).uv);
+  for (const auto& [u, v] : kPoints) {
+    const glm::vec2 uv = surfaceAt(g, {triangle, 0, u, v}).uv;
+    sum += 0.25f * emission(*frame.scene, material, uv) *
+           coverage(*frame.scene, material, uv, vertexAlpha(g, triangle, u, v), fullMaterials);
+  }
   // This keeps a dark estimate from hiding a bright spot between the points.
-  sum = glm::max(sum, 0.05f * material.emission);
+  const bool varies =
+      material.emissionTexture || (material.masked && (material.baseColorTexture || !g.colors.empty()));
+  if (varies) sum = glm::max(sum, 0.05f * material.emission);
   return (double(sum.r) + sum.g + sum.b) / 3.0;
 }
 
@@ -36,7 +49,8 @@ Emitters::Emitters(const Frame& frame, bool fullMaterials) : frame_(frame) {
                     &c = g.positions[g.triangles[t].v[2]];
     const glm::vec3 normal = glm::cross(b - a, c - a);
     const float twice = glm::length(normal);
-    const double radiance = estimatedRadiance(frame, t, materials[index]) * double(frame.preExposure);
+    const double radiance =
+        estimatedRadiance(frame, t, materials[index], fullMaterials) * double(frame.preExposure);
     const double power = radiance * 0.5 * double(twice);
     if (!(radiance > 0) || !std::isfinite(power)) continue;
     const glm::vec3 centre = (a + b + c) / 3.0f, p = a - centre, q = b - centre, r = c - centre;

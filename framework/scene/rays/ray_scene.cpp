@@ -159,6 +159,11 @@ bool RayScene::occluded(const Ray& ray) const {
   return impl_->still->tracer->occluded(ray) || (impl_->moving && impl_->moving->occluded(ray));
 }
 
+bool RayScene::isSolid(const RayHit& point) const {
+  const Still& still = *impl_->still;
+  return still.masks.empty() || still.opaqueAt(point.triangle, point.u, point.v);
+}
+
 bool RayScene::meetsTransparency() const { return impl_->still->meetsTransparency; }
 float RayScene::epsilon() const { return impl_->epsilon; }
 double RayScene::surfaceArea() const { return impl_->area; }

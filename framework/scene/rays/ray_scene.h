@@ -52,6 +52,8 @@ class RayScene {
   RayHit intersect(const Ray& ray) const;  // nearest hit in (near, far)
   bool occluded(const Ray& ray) const;
 
+  // Whether rays meet the surface at this point of its triangle, which they do not in the holes of alpha masks.
+  bool isSolid(const RayHit& point) const;
   // Whether rays may meet surfaces that let a part of the light through.
   bool meetsTransparency() const;
   // Smallest distance that keeps a ray that leaves a surface from hitting it again: 1e-5 of the scene's diagonal.
