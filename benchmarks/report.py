@@ -34,6 +34,8 @@ MEASURES = {
     "error.fovea.relmse": ("relMSE indirect fovea", 1, "relative square error of the indirect radiance alone"),
     "error.periphery.relmse": ("relMSE indirect periphery", 1, "the same outside the fovea"),
     "error.fovea.flip": ("FLIP fovea", 1, "visible difference when one picture replaces the other, 0 to 1"),
+    "error.fovea.blocks": ("blocks fovea", 1, "how much more neighbouring pixels differ across the lines of lattices of 8 and 16 pixels than beside them, relative to the reference; 1 without blocks"),
+    "error.periphery.blocks": ("blocks periphery", 1, "the same outside the fovea"),
     "error.fovea.direct_floor": ("direct floor fovea ×10⁻³", 1e3, "the MSE that would remain with perfect indirect light"),
     "temporal.fovea.mse_prime": ("MSE' fovea ×10⁻³", 1e3, "mean square change between consecutive frames (the paper's Eq. 4); contains the scene's own motion, so the best value is the reference's"),
     "temporal.fovea.reference_mse_prime": ("MSE' fovea of the reference ×10⁻³", 1e3, "the same of the reference, less its noise: the scene's motion alone"),

@@ -363,6 +363,7 @@ Json BenchRunner::errors(const Job& job, const image::File& last) {
     return Json{{"mse", number(m.mse)},
                 {"psnr", number(m.psnr)},
                 {"flip", number(m.flip)},
+                {"blocks", number(i ? i->blocks : m.blocks)},
                 {"relmse", i ? number(i->relMse) : Json()},
                 {"noise_floor", number(m.noiseFloor)},
                 {"direct_floor", number(directFloor)}};

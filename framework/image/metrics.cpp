@@ -143,6 +143,58 @@ PerRegion<double> meanSquaredError(const Picture& a, const Picture& b, const Dis
   return result;
 }
 
+namespace {
+
+// Squared differences of neighbouring pixels across the lines of a lattice, and beside them.
+struct Jumps {
+  RegionMean across, beside;
+  double ratio() const { return beside.sum > 0 ? across.mean() / beside.mean() : kUnknown; }
+};
+
+// The mean over RGB of the squared difference between a pixel and the one before it along an axis, which is `step` values
+// apart.
+double squaredJump(const Image& display, size_t pixel, size_t step) {
+  double sum = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    const double d = double(display.data[3 * pixel + c]) - display.data[3 * (pixel - step) + c];
+    sum += d * d / 3;
+  }
+  return sum;
+}
+
+PerRegion<Jumps> jumpsOf(const Image& display, const Disc& fovea, uint32_t side) {
+  PerRegion<Jumps> jumps;
+  const auto add = [&](uint32_t x, uint32_t y, uint32_t along, uint32_t size, size_t step) {
+    const uint32_t place = along % side;  // of the second of the two pixels
+    if (along < 2 || along + 1 >= size || (place != 0 && place != 1 && place != side - 1)) return;
+    const double jump = squaredJump(display, size_t(y) * display.width + x, step);
+    Jumps& region = fovea.contains(x, y) ? jumps.fovea : jumps.periphery;
+    for (Jumps* j : {&region, &jumps.whole}) {
+      RegionMean& mean = place == 0 ? j->across : j->beside;
+      mean.sum += jump;
+      ++mean.pixels;
+    }
+  };
+  for (uint32_t y = 0; y < display.height; ++y)
+    for (uint32_t x = 0; x < display.width; ++x) {
+      add(x, y, x, display.width, 1);
+      add(x, y, y, display.height, display.width);
+    }
+  return jumps;
+}
+
+}  // namespace
+
+PerRegion<double> blockiness(const Picture& image, const Picture& reference, const Disc& fovea) {
+  checkComparable(image.display, "the picture", reference.display, "the reference");
+  PerRegion<double> result{kUnknown, kUnknown, kUnknown};
+  for (const uint32_t side : {8u, 16u})
+    forRegions([](double& blocks, const Jumps& its,
+                  const Jumps& reference) { blocks = std::fmax(blocks, its.ratio() / reference.ratio()); },
+               result, jumpsOf(image.display, fovea, side), jumpsOf(reference.display, fovea, side));
+  return result;
+}
+
 PerRegion<Measures> compare(const Picture& image, const Picture& reference,
                             const std::optional<Halves>& halves, const Disc& fovea, double pixelsPerDegree) {
   checkPictures(image, reference, halves);
@@ -161,6 +213,8 @@ PerRegion<Measures> compare(const Picture& image, const Picture& reference,
         },
         result, displayErrors(halves->a, halves->b, fovea));
   forRegions([](Measures& m) { m.psnr = psnrOf(m.mse); }, result);
+  forRegions([](Measures& m, double blocks) { m.blocks = blocks; }, result,
+             blockiness(image, reference, fovea));
 
   const bool linear = !image.radiance.data.empty() && !reference.radiance.data.empty();
   if (linear)

@@ -59,6 +59,13 @@ struct PerRegion {
 // as checkComparable() does.
 PerRegion<double> meanSquaredError(const Picture& a, const Picture& b, const Disc& fovea);
 
+// How much more blocks of pixels show in the picture than in the reference. Of neighbouring pixels on both sides of the
+// lines of a lattice of 8 or 16 pixels, the mean squared difference of T is divided by that of neighbours one pixel
+// beside the lines, and this ratio by that of the reference; the lattice with the larger result counts. 1 without blocks,
+// NaN for a region without such lines, or where one of the pictures is uniform beside them. Throws as checkComparable()
+// does.
+PerRegion<double> blockiness(const Picture& image, const Picture& reference, const Disc& fovea);
+
 // NaN means unknown, as in a region without pixels.
 struct Measures {
   uint64_t pixels = 0;
@@ -67,6 +74,7 @@ struct Measures {
   // Mean of (a - g)^2 / (g + 0.01)^2 of the radiance, minus relMseNoiseFloor if known.
   double relMse = kUnknown;
   double flip = kUnknown;        // mean of flip(), including the reference's noise
+  double blocks = kUnknown;      // blockiness() of the picture
   double noiseFloor = kUnknown;  // the reference's share of mse
   double relMseNoiseFloor = kUnknown;
 };

@@ -35,6 +35,7 @@ Json toJson(const Row& row) {
           {"psnr", m.psnr},
           {"relmse", m.relMse},
           {"flip", m.flip},
+          {"blocks", m.blocks},
           {"noise_floor", m.noiseFloor},
           {"relmse_noise_floor", m.relMseNoiseFloor},
           {"direct_floor", row.directFloor}};
@@ -50,13 +51,14 @@ void print(const Options& options, const Compared& compared, const Row (&rows)[3
     return;
   }
   fmt::print("{} against {}: {}\n\n", options.image, options.reference, describeInWords(compared));
-  constexpr const char* kLine = "{:<10} {:>9} {:>11} {:>9} {:>11} {:>9} {:>12} {:>13}\n";
-  fmt::print(kLine, "", "pixels", "MSE", "PSNR, dB", "relMSE", "FLIP", "noise floor", "direct floor");
+  constexpr const char* kLine = "{:<10} {:>9} {:>11} {:>9} {:>11} {:>9} {:>9} {:>12} {:>13}\n";
+  fmt::print(kLine, "", "pixels", "MSE", "PSNR, dB", "relMSE", "FLIP", "blocks", "noise floor",
+             "direct floor");
   for (const Row& row : rows) {
     const image::Measures& m = row.measures;
     fmt::print(kLine, row.name, m.pixels, formatMeasure(m.mse), formatMeasure(m.psnr),
-               formatMeasure(m.relMse), formatMeasure(m.flip), formatMeasure(m.noiseFloor),
-               formatMeasure(row.directFloor));
+               formatMeasure(m.relMse), formatMeasure(m.flip), formatMeasure(m.blocks),
+               formatMeasure(m.noiseFloor), formatMeasure(row.directFloor));
   }
   if (!compared.halves)
     fmt::print(

@@ -96,6 +96,33 @@ TEST(Metrics, EqualPicturesHaveNoError) {
   EXPECT_EQ(m.whole.psnr, std::numeric_limits<double>::infinity());
 }
 
+// Noise has as large differences across the lines of a lattice as beside them. Blocks of 8 and 16 pixels that are added
+// to it show where they are, and blocks of another size do not.
+TEST(Metrics, BlocksShowAgainstTheReference) {
+  constexpr uint32_t kSize = 192;
+  constexpr Disc kLeft{0, kSize / 2, kSize / 2};
+  Image noise = flat(kSize, kSize, 0.3f), other = noise;
+  for (size_t i = 0; i < noise.data.size(); ++i) {
+    noise.data[i] += 0.02f * symmetric(3, i);
+    other.data[i] += 0.01f * symmetric(4, i);
+  }
+  EXPECT_NEAR(blockiness(display(noise), display(other), kLeft).whole, 1, 0.05);
+  for (const uint32_t side : {8u, 16u, 7u}) {
+    Image blocks = noise;
+    for (uint32_t y = 0; y < kSize; ++y)
+      for (uint32_t x = 0; x < kSize; ++x)
+        for (uint32_t c = 0; c < 3 && !kLeft.contains(x, y); ++c)
+          blocks.at(x, y, c) += (x / side + y / side) % 2 == 0 ? 0.01f : -0.01f;
+    const auto got = blockiness(display(blocks), display(other), kLeft);
+    // Squared differences have the mean 2 * 0.02^2 / 3 in the noise, to which the edges of blocks add 0.02^2.
+    EXPECT_NEAR(got.periphery, side == 7 ? 1 : 2.5, side == 7 ? 0.15 : 0.2) << side;
+    EXPECT_NEAR(got.fovea, 1, 0.15) << side;
+    const auto m = compare(display(blocks), display(other), {}, kLeft, kDefaultPixelsPerDegree);
+    EXPECT_EQ(m.periphery.blocks, got.periphery);
+  }
+  EXPECT_TRUE(std::isnan(blockiness(display(flat(4, 4, 1)), display(flat(4, 4, 1)), kLeft).whole));
+}
+
 // The reference is the mean of two noisy halves; with its noise subtracted, the errors are those against the truth.
 TEST(Metrics, NoiseOfTheReferenceIsSubtracted) {
   constexpr uint32_t kSide = 200;

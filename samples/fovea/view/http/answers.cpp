@@ -225,8 +225,8 @@ Answer Answers::measures(std::string_view query) {
   const auto regions =
       measure(picture->data, reference->data, picture->exposure, picture->gaze, picture->foveaRadius);
   const auto json = [](const image::Measures& m) {  // NaN and infinity become null
-    return nlohmann::json{
-        {"pixels", m.pixels}, {"mse", m.mse}, {"psnr", m.psnr}, {"rel_mse", m.relMse}, {"flip", m.flip}};
+    return nlohmann::json{{"pixels", m.pixels},  {"mse", m.mse},   {"psnr", m.psnr},
+                          {"rel_mse", m.relMse}, {"flip", m.flip}, {"blocks", m.blocks}};
   };
   return {200, "application/json",
           textOf({{"fovea", json(regions.fovea)},
