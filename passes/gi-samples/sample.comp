@@ -47,7 +47,9 @@ void consider(INOUT(Choice) choice, TracedSurface v, vec3 direction, bool isAime
     found = Reservoir(v.position + kSky * direction, 0.0, hit.brighter * outside.radiance, 0.0, -direction, 0.0);
     density += outside.density;
   } else if (hit.there) {
-    found = Reservoir(hit.position, 0.0, radianceOf(hit, stream), 0.0, hit.face, 0.0);
+    bool moves = hit.triangle >= frame.firstMovingTriangle;
+    float mover = moves ? float(hit.triangle - frame.firstMovingTriangle + 1u) : 0.0;
+    found = Reservoir(hit.position, 0.0, radianceOf(hit, stream), 0.0, hit.face, mover);
     density += aimedDensity(v, hit);
   }
   float target = dot(found.radiance, kLuminance) * cosine;

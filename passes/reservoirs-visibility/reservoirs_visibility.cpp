@@ -13,10 +13,9 @@ using namespace graph;
 void declarePorts(PassDeclaration& d) {
   constexpr Usage images = Usage::StorageRead, lists = Usage::TexelRead, write = Usage::StorageWrite;
   d.view();
-  d.input("gbuffer", "gbuffer", gbufferMembers(images, {"position", "face", "id"}),
-          "surfaces seen by the eye");
+  d.input("gbuffer", "gbuffer", gbufferMembers(images, {"position", "face"}), "surfaces seen by the eye");
   d.input("other_gbuffer", "gbuffer", gbufferMembers(images, {"position", "face"}),
-          "surfaces of the sources: `gbuffer`, or that of the previous frame");
+          "surfaces of the sources: `gbuffer`, or those of the previous frame as they lie now");
   const ResourceSpec reservoirs = buffer("Reservoir", sizeof(Reservoir));
   d.input("own", reservoirs, lists, "reservoir of each pixel, row after row");
   d.input("others", reservoirs, lists, "reservoirs of the pixels of `other_gbuffer`");
@@ -27,11 +26,6 @@ void declarePorts(PassDeclaration& d) {
            write,
            "two bits for each source k; 2 k: the pixel sees the sample of the source, 2 k + 1: the source "
            "sees that of the pixel");
-  d.parameter(
-      "previous", flag(false),
-      "whether the sources are of the previous frame. Those on things that move are then taken to see "
-      "what the pixel sees: where they were, something else may be by now, and rays from there would end "
-      "at once");
   d.counter("rays", "rays traced towards samples");
   d.counter("hidden", "rays that did not reach their sample");
 }

@@ -6,7 +6,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 IMAGE(rgba32f, readonly, image2D, gbufferPosition);
 IMAGE(rg16_snorm, readonly, image2D, gbufferFace);
-IMAGE(r32ui, readonly, uimage2D, gbufferId);
 IMAGE(rgba32f, readonly, image2D, otherGbufferPosition);
 IMAGE(rg16_snorm, readonly, image2D, otherGbufferFace);
 LARGE_TEXELS(vec4, own);
@@ -14,8 +13,6 @@ LARGE_TEXELS(vec4, others);
 IMAGE(r32ui, readonly, uimage2D, sources);
 IMAGE(r32ui, writeonly, uimage2D, seen);
 COUNTERS { uint rays, hidden; } counters;
-
-layout(push_constant) uniform Constants { uint previous; } constants;
 
 CONSTANT uint kNone = 0xffffffffu;  // in place of a pixel: none
 
@@ -37,7 +34,6 @@ void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID), size = imageSize(gbufferPosition);
   if (any(greaterThanEqual(p, size))) return;
   vec3 position = vec3(imageLoad(gbufferPosition, p)), face = octDecode(vec2(imageLoad(gbufferFace, p)));
-  bool moves = imageLoad(gbufferId, p).r >> 16 != 0u;
   Reservoir mine = loadReservoir(own, p.y * size.x + p.x);
   int each = imageSize(sources).x / size.x;
   uint bits = 0u;
@@ -46,9 +42,7 @@ void main() {
     if (source == kNone) continue;
     ivec2 q = ivec2(source & 0xffffu, source >> 16);
     bool mineSees = sees(position, face, loadReservoir(others, q.y * size.x + q.x)),
-         itsSees = constants.previous != 0u && moves;
-    if (!itsSees)
-      itsSees = sees(vec3(imageLoad(otherGbufferPosition, q)), octDecode(vec2(imageLoad(otherGbufferFace, q))), mine);
+         itsSees = sees(vec3(imageLoad(otherGbufferPosition, q)), octDecode(vec2(imageLoad(otherGbufferFace, q))), mine);
     bits |= uint(mineSees) << 2 * k | uint(itsSees) << (2 * k + 1);
   }
   imageStore(seen, p, uvec4(bits, 0u, 0u, 0u));

@@ -18,7 +18,8 @@ struct Reservoir {
   // W: estimate of 1 / density with which the pixel gets this sample, sr; 0 if no light was found.
   float weight SHARED_ZERO;
   vec3 normal SHARED_ZERO;  // geometric one of the point, unit, on the side of the light
-  float unused SHARED_ZERO;
+  // 1 + number of its triangle past FrameBlock::firstMovingTriangle (exact below 2^24); 0 for what cannot move.
+  float mover SHARED_ZERO;
 };
 SHARED_SIZE(Reservoir, 48)
 SHARED_OFFSET(Reservoir, normal, 32)

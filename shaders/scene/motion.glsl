@@ -4,18 +4,34 @@
 
 #include "scene/objects.glsl"
 
-// By how much a point of a triangle whose vertices move individually has moved since the previous frame, m in world
-// space. position: in this frame; triangle: as sceneTriangle() returns it.
-vec3 movedSince(vec3 position, uvec4 triangle) {
-  mat3 now = mat3(scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z));
-  mat3 before = mat3(scenePreviousPosition(triangle.x), scenePreviousPosition(triangle.y),
-                     scenePreviousPosition(triangle.z));
-  vec3 b = now[1] - now[0], c = now[2] - now[0], p = position - now[0], normal = cross(b, c);
+// The corners of a triangle in the previous frame, world space, m. triangle: as sceneTriangle() returns it.
+mat3 cornersBefore(uvec4 triangle) {
+  return mat3(scenePreviousPosition(triangle.x), scenePreviousPosition(triangle.y), scenePreviousPosition(triangle.z));
+}
+
+// The weights of the corners at a point of their plane.
+vec3 cornerWeights(mat3 corners, vec3 point) {
+  vec3 b = corners[1] - corners[0], c = corners[2] - corners[0], p = point - corners[0], normal = cross(b, c);
   float area2 = dot(normal, normal);
   vec2 weights = vec2(dot(cross(p, c), normal), dot(cross(b, p), normal)) / max(area2, 1e-30);
   weights = area2 > 0.0 ? weights : vec2(1.0 / 3.0);
-  return (now - before) * vec3(1.0 - weights.x - weights.y, weights);
+  return vec3(1.0 - weights.x - weights.y, weights);
 }
+
+// By how much a point of a triangle whose vertices move individually has moved since the previous frame, m in world
+// space. position: in this frame; triangle: as sceneTriangle() returns it.
+vec3 movedSince(vec3 position, uvec4 triangle) {
+  mat3 now = cornersNow(triangle);
+  return (now - cornersBefore(triangle)) * cornerWeights(now, position);
+}
+
+// Where a point of a triangle is now, m in world space. position: where it was in the previous frame.
+vec3 movedTo(vec3 position, uvec4 triangle) {
+  return cornersNow(triangle) * cornerWeights(cornersBefore(triangle), position);
+}
+
+// The rotation of a triangle since the previous frame.
+mat3 turnSince(uvec4 triangle) { return axesOf(cornersNow(triangle)) * transpose(axesOf(cornersBefore(triangle))); }
 
 // How a surface has moved since the previous frame: a point that moves along with it was at turn * point + way, m in
 // world space.

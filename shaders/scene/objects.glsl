@@ -64,14 +64,19 @@ vec3 attachedPosition(vec3 place) {
   return a + place.y * (scenePosition(t.y) - a) + place.z * (scenePosition(t.z) - a);
 }
 
-// Axes of a triangle, as unit columns: along its first edge, across that in its plane, and its normal.
-mat3 triangleAxes(uint triangle) {
-  uvec4 t = sceneTriangle(frame.firstMovingTriangle + triangle);
-  vec3 a = scenePosition(t.x), edge = scenePosition(t.y) - a, n = cross(edge, scenePosition(t.z) - a);
+// The corners of a triangle in this frame, world space, m. triangle: as sceneTriangle() returns it.
+mat3 cornersNow(uvec4 triangle) {
+  return mat3(scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z));
+}
+
+// Axes of a triangle with these corners, as unit columns: along its first edge, across that in its plane, and its normal.
+mat3 axesOf(mat3 corners) {
+  vec3 edge = corners[1] - corners[0], n = cross(edge, corners[2] - corners[0]);
   if (!(dot(n, n) > 0.0)) return mat3(1.0);
   edge = normalize(edge);
   n = normalize(n);
   return mat3(edge, cross(n, edge), n);
 }
+mat3 triangleAxes(uint triangle) { return axesOf(cornersNow(sceneTriangle(frame.firstMovingTriangle + triangle))); }
 
 #endif

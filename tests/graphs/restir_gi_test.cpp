@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fovea/scene.h"
+#include "framework/base/random.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
 #include "tests/graphs/lit_sphere.h"
@@ -105,6 +106,52 @@ Compared compare(const scene::Scene& s, const Image& reference, uint32_t seeds,
     if (i % 4 != 3)
       c.relMse += std::pow((all[i] - reference[i]) / (reference[i] + 0.01), 2) / (3.0 * kSide * kSide);
   return c;
+}
+
+// A hedge of masked leaves over a floor in the sun. It sways by 3 cm within a quarter of a second.
+scene::Scene swayingHedge() {
+  scene::Scene s;
+  addQuad(s, addMaterial(s, {0.6f, 0.5f, 0.4f}), {-4, 0, 4}, {8, 0, 0}, {0, 0, -8});
+  scene::Texture alpha{"leaf", 16, 16, true, {}};
+  for (int i = 0; i < 256; ++i) {
+    const float x = (float(i % 16) - 7.5f) / 8, y = (float(i / 16) - 7.5f) / 8;
+    alpha.rgba.insert(alpha.rgba.end(), {255, 255, 255, uint8_t(x * x + y * y < 0.8f ? 255 : 0)});
+  }
+  s.textures = {alpha};
+  const uint32_t leaf = addMaterial(s, {0.3f, 0.5f, 0.2f});
+  s.materials[leaf].masked = s.materials[leaf].doubleSided = true;
+  s.materials[leaf].baseColorTexture = {.texture = 0};
+  const auto random = [](uint32_t i, uint32_t k) { return uniformFloat(hashCombine(i, k)); };
+  for (uint32_t i = 0; i < 600; ++i) {
+    const glm::vec3 at(3 * random(i, 0) - 1.5f, 1.2f * random(i, 1), 1.2f * random(i, 2) - 0.6f);
+    const glm::vec3 u = glm::normalize(glm::vec3(random(i, 3), random(i, 4), random(i, 5)) - 0.5f),
+                    v = glm::normalize(
+                        glm::cross(u, glm::vec3(random(i, 6), random(i, 7), random(i, 8)) - 0.5f));
+    addQuad(s, leaf, at, 0.22f * u, 0.22f * v);
+  }
+  for (size_t i = 2; i < s.meshes.size(); ++i) s.meshes[1].primitives.push_back(s.meshes[i].primitives[0]);
+  s.meshes.resize(2);
+  s.nodes.resize(2);
+  s.nodes[1].dynamic = true;
+  scene::Mover sways{.node = 1, .repeat = scene::Repeat::Loop, .keys = {}};
+  for (const float side : {0, 1, 0, -1, 0})
+    sways.keys.push_back({.time = 0.25f * float(sways.keys.size()), .translation = {0.03f * side, 0, 0}});
+  s.movers = {sways};
+  s.lights = {sun({0.4f, -1, -0.6f}, glm::vec3(3))};
+  s.cameras.emplace_back();
+  s.cameras[0].position = {0.05f, 0.7f, 3};
+  s.cameras[0].verticalFov = 0.7f;
+  return s;
+}
+
+// Samples move along with the leaves on which they lie. If they stayed where they were found, a fifth of the light would be
+// lost behind the leaves.
+TEST(RestirGi, NoLightIsLostInSwayingLeaves) {
+  const scene::Scene s = swayingHedge();
+  const Compared c = compare(s, referenceOf(s), 1, {});
+  std::printf("  %.4f of the light; parts within %.3f\n", c.ratio, c.worstPart);
+  EXPECT_NEAR(c.ratio, 1, 0.03);
+  EXPECT_LT(c.worstPart, 0.07);
 }
 
 TEST(LongRestirGi, MeanIsTheLightOfTracedPathsUnlessBiased) {

@@ -8,9 +8,12 @@
 
 #include "fovea/test.h"
 #include "framework/scene/rays/ray_scene.h"
+#include "shaders/records/reservoir.h"
 #include "shaders/records/vpl.h"
+#include "tests/passes/deferred_reference.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/shadow_view.h"
+#include "tests/references/octahedral.h"
 #include "tests/references/paraboloid.h"
 #include "tests/references/voxel_grid.h"
 
@@ -146,17 +149,22 @@ struct Seen {
   std::vector<uint32_t> triangle, id;
 };
 
-// The pixel, between whole numbers, that showed a point of `now` before.
-glm::dvec2 placeBefore(const Seen& now, const Seen& before, size_t pixel) {
-  const uint32_t* v = now.geometry.triangles[now.triangle[pixel]].v;
-  const auto corner = [&](const Seen& seen, int i) { return glm::dvec3(seen.geometry.positions[v[i]]); };
-  const glm::dvec3 a = corner(now, 0), b = corner(now, 1) - a, c = corner(now, 2) - a,
-                   p = glm::dvec3(now.position[pixel]) - a;
-  const glm::dvec3 n = glm::cross(b, c);
+// Where a point of a triangle of one geometry lies in another one.
+glm::dvec3 placeIn(const scene::Geometry& to, const scene::Geometry& from, uint32_t triangle,
+                   glm::dvec3 point) {
+  const uint32_t* v = from.triangles[triangle].v;
+  const auto corner = [&](const scene::Geometry& g, int i) { return glm::dvec3(g.positions[v[i]]); };
+  const glm::dvec3 a = corner(from, 0), b = corner(from, 1) - a, c = corner(from, 2) - a, p = point - a,
+                   n = glm::cross(b, c);
   const double second = glm::dot(glm::cross(p, c), n) / glm::dot(n, n),
                third = glm::dot(glm::cross(b, p), n) / glm::dot(n, n);
+  return (1 - second - third) * corner(to, 0) + second * corner(to, 1) + third * corner(to, 2);
+}
+
+// The pixel, between whole numbers, that showed a point of `now` before.
+glm::dvec2 placeBefore(const Seen& now, const Seen& before, size_t pixel) {
   const glm::dvec3 point =
-      (1 - second - third) * corner(before, 0) + second * corner(before, 1) + third * corner(before, 2);
+      placeIn(before.geometry, now.geometry, now.triangle[pixel], glm::dvec3(now.position[pixel]));
   const glm::dvec4 clip = glm::dmat4(before.view.worldToClip) * glm::dvec4(point, 1);
   return (0.5 * glm::dvec2(clip) / clip.w + 0.5) * double(kSize) - 0.5;
 }
@@ -207,6 +215,97 @@ TEST_P(Movers, MotionVectors) {
     EXPECT_LT(lost, box / 4) << index;  // edges that the box has uncovered
     if (index > kAway) {
       EXPECT_GT(moved, 0.5) << index;
+    }
+  });
+}
+
+// The sample of each pixel lies on what another one showed, on either side.
+std::vector<passes::Reservoir> samplesOn(const Seen& seen) {
+  std::vector<passes::Reservoir> samples(kSize * kSize);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const size_t j = i * 37 % samples.size();
+    if (seen.triangle[j] == ~0u) continue;
+    passes::Reservoir& r = samples[i];
+    r.position = glm::vec3(seen.position[j]);
+    r.normal = (i % 2 == 0 ? 1.0f : -1.0f) * glm::vec3(faceNormal(seen.geometry, seen.triangle[j]));
+    r.radiance = {1, 2, 3};
+    r.count = 4;
+    r.weight = 5;
+    const uint32_t first = seen.geometry.staticTriangles;
+    r.mover = seen.triangle[j] >= first ? float(seen.triangle[j] - first + 1) : 0;
+  }
+  return samples;
+}
+
+TEST_P(Movers, ReservoirsMotion) {
+  const scene::Scene s = movingScene(GetParam());
+  std::optional<Seen> now, before;
+  std::vector<passes::Reservoir> samples(kSize * kSize);
+  PassTest test("reservoirs-motion");
+  test.scene(s).viewSize(kSize, kSize);
+  const std::vector<uint32_t> numbers(kSize * kSize);
+  test.image("previous.position", VK_FORMAT_R32G32B32A32_SFLOAT, kSize, kSize, 1,
+             std::vector<glm::vec4>(kSize * kSize));
+  test.image("previous.normal", VK_FORMAT_R16G16B16A16_SFLOAT, kSize, kSize, 1,
+             std::vector<uint64_t>(kSize * kSize));
+  test.image("previous.face", VK_FORMAT_R16G16_SNORM, kSize, kSize, 1, numbers);
+  test.image("previous.id", VK_FORMAT_R32_UINT, kSize, kSize, 1, numbers);
+  test.image("previous.triangle", VK_FORMAT_R32_UINT, kSize, kSize, 1, numbers);
+  test.buffer("samples", samples, "Reservoir");
+  test.beforeFrame([&](PassTest& t, scene::Frame& frame) {
+    before = now;
+    now.emplace(s, frame);
+    if (!before) before = now;
+    std::vector<uint32_t> faces;
+    for (const uint64_t n : before->normal)
+      faces.push_back(glm::packSnorm2x16(octEncode(glm::vec3(glm::unpackHalf4x16(n)))));
+    samples = samplesOn(*before);
+    t.set("previous.position", before->position);
+    t.set("previous.normal", before->normal);
+    t.set("previous.face", faces);
+    t.set("previous.id", before->id);
+    t.set("previous.triangle", before->triangle);
+    t.set("samples", samples);
+  });
+  atFrames(test, [&](uint32_t index) {
+    const auto position = test.values<glm::vec4>("moved.position");
+    const auto normal = test.values<uint64_t>("moved.normal");
+    const auto face = test.values<uint32_t>("moved.face");
+    const auto reservoirs = test.values<passes::Reservoir>("reservoirs");
+    double moved = 0;
+    // The point of a triangle and a normal there, before and now.
+    const auto check = [&](uint32_t triangle, glm::vec3 from, glm::vec3 up, glm::vec3 to, glm::vec3 nowUp) {
+      const glm::dvec3 place = placeIn(now->geometry, before->geometry, triangle, glm::dvec3(from)),
+                       n = faceNormal(now->geometry, triangle);
+      const bool same = glm::dot(glm::dvec3(up), faceNormal(before->geometry, triangle)) > 0;
+      EXPECT_LT(glm::distance(place, glm::dvec3(to)), 1e-4) << "frame " << index;
+      EXPECT_LT(glm::distance(same ? n : -n, glm::dvec3(nowUp)), 2e-3) << "frame " << index;
+      moved = std::max(moved, glm::distance(place, glm::dvec3(from)));
+    };
+    int hidden = 0;
+    for (size_t i = 0; i < position.size(); ++i) {
+      const uint32_t triangle = before->triangle[i], sampled = before->triangle[i * 37 % position.size()];
+      const bool away = index == kAway && triangle != ~0u && isBox(now->geometry, triangle);
+      EXPECT_EQ(position[i].w, away ? 0 : before->position[i].w);
+      if (triangle != ~0u && !away) {
+        const glm::vec3 up(glm::unpackHalf4x16(before->normal[i]));
+        check(triangle, glm::vec3(before->position[i]), up, glm::vec3(position[i]),
+              glm::vec3(glm::unpackHalf4x16(normal[i])));
+        check(triangle, glm::vec3(before->position[i]), up, glm::vec3(position[i]),
+              scene::octDecode(glm::unpackSnorm2x16(face[i])));
+      }
+      const passes::Reservoir &r = reservoirs[i], &was = samples[i];
+      EXPECT_EQ(r.count, was.count);
+      EXPECT_EQ(r.radiance, was.radiance);
+      EXPECT_EQ(r.mover, was.mover);
+      const bool gone = index == kAway && was.mover > 0;
+      EXPECT_EQ(r.weight, gone ? 0 : was.weight);
+      hidden += gone;
+      if (was.count > 0 && !gone) check(sampled, was.position, was.normal, r.position, r.normal);
+    }
+    EXPECT_EQ(hidden > 0, index == kAway);
+    if (index > kAway) {
+      EXPECT_GT(moved, 0.01) << index;
     }
   });
 }

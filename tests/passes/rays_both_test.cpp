@@ -118,7 +118,6 @@ void wireGiSamples(PassTest& test, const Inputs&) { test.param("paths", 2); }
 void wireReservoirsVisibility(PassTest& test, const Inputs& in) {
   in.seen.wire(test);
   in.seen.wire(test, "other_gbuffer");
-  wireImage(test, "gbuffer.id", VK_FORMAT_R32_UINT, std::vector<uint32_t>(kPixels, 0));
   std::vector<passes::Reservoir> own(kPixels), others(kPixels);
   std::vector<uint32_t> sources;
   Numbers numbers(7);

@@ -205,7 +205,7 @@ TEST(SharedRecords, Reservoirs) {
   using passes::Reservoir;
   expectLayout("records/reservoir.h", "Reservoir", sizeof(Reservoir),
                {AT(Reservoir, position), AT(Reservoir, count), AT(Reservoir, radiance), AT(Reservoir, weight),
-                AT(Reservoir, normal), AT(Reservoir, unused)});
+                AT(Reservoir, normal), AT(Reservoir, mover)});
 }
 
 TEST(SharedRecords, OfOnePass) {
