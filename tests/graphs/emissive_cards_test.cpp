@@ -65,14 +65,15 @@ scene::Scene furnace(bool fullMaterials, bool cards) {
 class EmissiveCards : public testing::TestWithParam<std::tuple<std::string, bool>> {};
 
 TEST_P(EmissiveCards, CannotBeToldFromTheWallsOfAFurnace) {
-  const auto& [graph, fullMaterials] = GetParam();
-  const auto light = [&, full = fullMaterials](bool cards) {
+  const std::string graph = std::get<0>(GetParam());
+  const bool fullMaterials = std::get<1>(GetParam());
+  const auto light = [&](bool cards) {
     GraphRunOptions options;
     options.size = {kSide, kSide};
     options.frames = 2;
     options.outputs = {"radiance"};
     if (graph == "reference") options.set = {"spp=64"};
-    const GraphRun run = runGraph(graph, furnace(full, cards), options);
+    const GraphRun run = runGraph(graph, furnace(fullMaterials, cards), options);
     const std::vector<float> picture = toFloats(run.outputs.at("radiance"));
     double sum = 0;
     for (size_t i = 0; i < picture.size(); ++i) sum += double(picture[i]);

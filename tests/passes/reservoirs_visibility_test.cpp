@@ -44,7 +44,7 @@ struct Input {
     }
   }
   void wire(PassTest& test, uint32_t sourceColumns = uint32_t(kSources * kSize.x)) const {
-    const uint32_t width = uint32_t(kSize.x), height = uint32_t(kSize.y);
+    const uint32_t height = uint32_t(kSize.y);
     seen.wire(test);
     before.wire(test, "other_gbuffer");
     test.scene(room.scene);
