@@ -59,11 +59,11 @@ struct PerRegion {
 // as checkComparable() does.
 PerRegion<double> meanSquaredError(const Picture& a, const Picture& b, const Disc& fovea);
 
-// How much more blocks of pixels show in the picture than in the reference. Of neighbouring pixels on both sides of the
-// lines of a lattice of 8 or 16 pixels, the mean squared difference of T is divided by that of neighbours one pixel
-// beside the lines, and this ratio by that of the reference; the lattice with the larger result counts. 1 without blocks,
-// NaN for a region without such lines, or where one of the pictures is uniform beside them. Throws as checkComparable()
-// does.
+// By how much blocks of pixels stand out in the picture, relative to the reference: 1 if they do not. For each picture, the
+// squared differences of T between neighbouring pixels are averaged across the lines of a lattice of 8 pixels, and one
+// pixel beside those lines; the ratio of the two means is divided by that of the reference. The same is done for 16
+// pixels, and the larger result counts. It is NaN for a region without such lines, or if one of the pictures is uniform
+// beside them. Throws as checkComparable() does.
 PerRegion<double> blockiness(const Picture& image, const Picture& reference, const Disc& fovea);
 
 // NaN means unknown, as in a region without pixels.

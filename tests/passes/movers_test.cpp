@@ -219,7 +219,8 @@ TEST_P(Movers, MotionVectors) {
   });
 }
 
-// The sample of each pixel lies on what another one showed, on either side.
+// A sample for each pixel. It lies on the surface that another pixel showed, and its normal is on either side of that
+// surface.
 std::vector<passes::Reservoir> samplesOn(const Seen& seen) {
   std::vector<passes::Reservoir> samples(kSize * kSize);
   for (size_t i = 0; i < samples.size(); ++i) {

@@ -96,8 +96,8 @@ TEST(Metrics, EqualPicturesHaveNoError) {
   EXPECT_EQ(m.whole.psnr, std::numeric_limits<double>::infinity());
 }
 
-// Noise has as large differences across the lines of a lattice as beside them. Blocks of 8 and 16 pixels that are added
-// to it show where they are, and blocks of another size do not.
+// In noise, neighbouring pixels differ as much across the lines of a lattice as beside them. If blocks of 8 or 16 pixels
+// are added, the measure finds them where they are; it does not find blocks of 7 pixels.
 TEST(Metrics, BlocksShowAgainstTheReference) {
   constexpr uint32_t kSize = 192;
   constexpr Disc kLeft{0, kSize / 2, kSize / 2};

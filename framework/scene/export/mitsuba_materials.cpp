@@ -133,25 +133,29 @@ std::string MitsubaMaterials::channel(const char* name, const TextureUse& use, u
   return bitmap(name, file, true, filterOf(use), from.wrap, toUv(use, from.scale));
 }
 
-// What a material has at each place of its base colour's texture, at the middles of at least kMaskTexels^2 parts of each
-// texel. It lies at its own place in the texture, so that it covers one period and wraps as the texture does.
+// An image of a property that varies with the texture of the base colour, evaluated at the middles of at least
+// kMaskTexels^2 parts of each texel. The image covers the texture once, so that it repeats as the texture does.
 std::string MitsubaMaterials::baked(const char* name, const Material& m, const std::string& suffix,
                                     uint32_t channels, const std::function<glm::vec3(glm::vec2)>& valueAt) {
   const TextureUse& use = m.baseColorTexture;
   const Texture& t = scene_.textures[use.texture];
+  // Shapes of several objects may have the same material.
+  std::string& file = files_[fmt::format("material {} {}", &m - scene_.materials.data(), name)];
   uint32_t parts = std::max(kMaskTexels, kMaskSide / std::max(t.width, t.height));
   while (parts > 1 && std::max(t.width, t.height) * parts > kMaxMaskSide) parts /= 2;
   const Unfolded from = unfold(t, use.wrapU, use.wrapV);
-  const glm::uvec2 size = glm::uvec2(from.texture.width, from.texture.height) * parts;
-  image::Image pixels{size.x, size.y, channels, std::vector<float>(size_t(size.x) * size.y * channels)};
-  for (uint32_t y = 0; y < size.y; ++y)
-    for (uint32_t x = 0; x < size.x; ++x) {
-      const glm::vec2 uv = (glm::vec2(x, y) + 0.5f) / glm::vec2(size) / from.scale;
-      const glm::vec3 value = valueAt(straightUv(uv, use));
-      for (uint32_t c = 0; c < channels; ++c) pixels.at(x, y, c) = value[int(c)];
-    }
-  const std::string file = textureFile(use, suffix);
-  image::write(folder_ / file, {{"", std::move(pixels)}});
+  if (file.empty()) {
+    const glm::uvec2 size = glm::uvec2(from.texture.width, from.texture.height) * parts;
+    image::Image pixels{size.x, size.y, channels, std::vector<float>(size_t(size.x) * size.y * channels)};
+    for (uint32_t y = 0; y < size.y; ++y)
+      for (uint32_t x = 0; x < size.x; ++x) {
+        const glm::vec2 uv = (glm::vec2(x, y) + 0.5f) / glm::vec2(size) / from.scale;
+        const glm::vec3 value = valueAt(straightUv(uv, use));
+        for (uint32_t c = 0; c < channels; ++c) pixels.at(x, y, c) = value[int(c)];
+      }
+    file = textureFile(use, suffix);
+    image::write(folder_ / file, {{"", std::move(pixels)}});
+  }
   return bitmap(name, file, true, "nearest", from.wrap, toUv(use, from.scale));
 }
 

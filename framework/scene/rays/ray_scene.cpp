@@ -97,7 +97,7 @@ struct RayScene::Still {
     const auto& t = corners[triangle];
     const glm::vec3 at = t[0] * (1.0f - u - v) + t[1] * u + t[2] * v;
     const Material& material = s.materials[0];
-    return at.z * reflectance(s, material, glm::vec2(at)).a >= material.alphaCutoff;
+    return coverage(s, material, glm::vec2(at), at.z, false) > 0;
   }
 
   void addMasks(const Scene& from, const Geometry& geometry, Passing passing) {
