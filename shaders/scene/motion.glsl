@@ -25,8 +25,8 @@ vec3 movedSince(vec3 position, uvec4 triangle) {
   return (now - cornersBefore(triangle)) * cornerWeights(now, position);
 }
 
-// The place in this frame of a point that moves along with a triangle, world space, m. position: its place in the previous
-// frame; triangle: as sceneTriangle() returns it.
+// The place in this frame of a point that moves along with a triangle, world space, m. position: its place in the
+// previous frame; triangle: as sceneTriangle() returns it.
 vec3 movedTo(vec3 position, uvec4 triangle) {
   return cornersNow(triangle) * cornerWeights(cornersBefore(triangle), position);
 }

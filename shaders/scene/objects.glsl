@@ -69,8 +69,8 @@ mat3 cornersNow(uvec4 triangle) {
   return mat3(scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z));
 }
 
-// Axes of the triangle with these corners, as unit columns: one along its first edge, one across that edge in the plane of
-// the triangle, and the normal.
+// Axes of the triangle with these corners, as unit columns: one along its first edge, one across that edge in the plane
+// of the triangle, and the normal.
 mat3 axesOf(mat3 corners) {
   vec3 edge = corners[1] - corners[0], n = cross(edge, corners[2] - corners[0]);
   if (!(dot(n, n) > 0.0)) return mat3(1.0);
