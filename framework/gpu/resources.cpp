@@ -257,9 +257,11 @@ bool supportsLinear(const Device& device, const ImageDesc& desc) {
   linear.linear = true;
   const VkImageCreateInfo info = imageInfo(linear);
   VkImageFormatProperties properties;
-  return vkGetPhysicalDeviceImageFormatProperties(device.physical(), info.format, info.imageType, info.tiling,
-                                                  info.usage, info.flags, &properties) == VK_SUCCESS &&
-         desc.width <= properties.maxExtent.width && desc.height <= properties.maxExtent.height &&
+  const VkResult result = vkGetPhysicalDeviceImageFormatProperties(
+      device.physical(), info.format, info.imageType, info.tiling, info.usage, info.flags, &properties);
+  if (result == VK_ERROR_FORMAT_NOT_SUPPORTED) return false;
+  check(result, "querying the format of image `" + desc.name + "`");
+  return desc.width <= properties.maxExtent.width && desc.height <= properties.maxExtent.height &&
          desc.mips <= properties.maxMipLevels && desc.layers <= properties.maxArrayLayers;
 }
 

@@ -78,7 +78,7 @@ Emission fromLight(LightRecord light, float probability, vec3 u) {
 Emission fromTriangle(float probability, float choice, vec3 u, vec2 turn_) {
   float own;
   Emitter e = emitterByPower(choice, own);
-  EmitterPoint p = pointOn(e, vec2(u));
+  EmitterPoint p = pointOn(wholeOf(e), vec2(u));
   vec3 normal = e.bothSides && u.z < 0.5 ? -e.normal : e.normal;
   float sides = e.bothSides ? 2.0 : 1.0, chosen = probability * own * p.density;
   vec3 flux = chosen > 0.0 ? p.radiance * (kPi * sides / chosen) : vec3(0.0);

@@ -33,16 +33,26 @@ struct Emitter {
   vec3 centre, normal;
 };
 
+// The corners of a triangle, world space, m; their mean; and the largest squared distance of one of them from it, m^2.
+mat3 cornersOf(uint triangle) {
+  uvec4 vertices = sceneTriangle(triangle);
+  return mat3(scenePosition(vertices.x), scenePosition(vertices.y), scenePosition(vertices.z));
+}
+vec3 meanOf(mat3 corners) { return (corners[0] + corners[1] + corners[2]) / 3.0; }
+float radius2Around(mat3 corners, vec3 centre) {
+  vec3 a = corners[0] - centre, b = corners[1] - centre, c = corners[2] - centre;
+  return max(dot(a, a), max(dot(b, b), dot(c, c)));
+}
+
 // The emissive triangle at a place in the order of the leaves.
 Emitter emitterAt(uint place) {
   uvec4 record = texelOf(rayEmitters, int(1u + place));
   uint index = record.x & ~kEmitterBothSides;
-  uvec4 triangle = sceneTriangle(index);
-  vec3 a = scenePosition(triangle.x), b = scenePosition(triangle.y), c = scenePosition(triangle.z);
-  vec3 across = cross(b - a, c - a), centre = (a + b + c) / 3.0;
+  mat3 corners = cornersOf(index);
+  vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]), centre = meanOf(corners);
   float twice = length(across), area = 0.5 * twice;
-  float radius2 = max(dot(a - centre, a - centre), max(dot(b - centre, b - centre), dot(c - centre, c - centre)));
   vec3 normal = twice > 0.0 ? across / twice : vec3(0.0);
+  float radius2 = radius2Around(corners, centre);
   return Emitter(index, record.x != index, uintBitsToFloat(record.y) * area, area, radius2, centre, normal);
 }
 
@@ -77,7 +87,7 @@ float emitterWeight(Emitter e, Receiver r) {
   vec3 to = r.position - e.centre;
   float above = dot(to, e.normal);
   if (!e.bothSides && !(above > 0.0)) return 0.0;
-  float d2 = max(dot(to, to), max(e.radius2, 1e-20)), d = sqrt(d2), radius = sqrt(e.radius2);
+  float d2 = max(dot(to, to), max(kNearPiece * e.radius2, 1e-20)), d = sqrt(d2), radius = sqrt(e.radius2);
   float receiving = radius - dot(to, r.normal);
   if (receiving < -kConeRounding * d) return 0.0;
   float emitting = min(abs(above) + 0.1 * radius, d), least = kLeastEmitterCosine * d;
@@ -106,13 +116,15 @@ float leafWeight(uvec2 range, Receiver r) {
 // A point on an emissive triangle.
 struct EmitterPoint {
   uint triangle;   // kNoTriangle if no emitter faces the receiver
+  vec2 weights;    // barycentric, of the triangle's second and third vertex
   vec3 position;   // world space, m
   vec3 normal;     // unit, on the side of the receiver
   vec3 radiance;   // W/(sr m^2)
   float density;   // probability density of the choice, per m^2
 };
 
-CONSTANT EmitterPoint kNoEmitterPoint = EmitterPoint(kNoTriangle, vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+CONSTANT EmitterPoint kNoEmitterPoint =
+    EmitterPoint(kNoTriangle, vec2(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 
 // The radiance of a point on an emissive triangle, W/(sr m^2), as far as the surface is seen: not in the holes of alpha
 // masks, and with alphaMode BLEND by alpha. weights: barycentric, of the second and third vertex.
@@ -122,14 +134,94 @@ vec3 emittedAt(uvec4 triangle, vec2 weights) {
   return materialEmission(material, uv) * coverage(material, uv, alphaAt(triangle, weights));
 }
 
-// A point of an emitter, on its front. u: uniform in [0, 1).
-EmitterPoint pointOn(Emitter e, vec2 u) {
+// A piece of an emissive triangle.
+struct EmitterPiece {
+  Emitter bounds;  // of the piece
+  mat3 corners;    // world space, m
+  mat3 weights;    // of the corners in the triangle, barycentric
+};
+
+EmitterPiece wholeOf(Emitter e) { return EmitterPiece(e, cornersOf(e.triangle), mat3(1.0)); }
+
+// A point of an emitter, or of a piece of it, on its front. u: uniform in [0, 1).
+EmitterPoint pointOn(EmitterPiece piece, vec2 u) {
   float root = sqrt(u.x);
-  vec2 weights = vec2(root * (1.0 - u.y), root * u.y);
-  uvec4 triangle = sceneTriangle(e.triangle);
-  vec3 position = mat3(scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z)) *
-                  vec3(1.0 - weights.x - weights.y, weights);
-  return EmitterPoint(e.triangle, position, e.normal, emittedAt(triangle, weights), 1.0 / e.area);
+  vec3 inside = vec3(1.0 - root, root * (1.0 - u.y), root * u.y), all = piece.weights * inside;
+  vec2 weights = vec2(all.y, all.z);
+  Emitter e = piece.bounds;
+  return EmitterPoint(e.triangle, weights, piece.corners * inside, e.normal,
+                      emittedAt(sceneTriangle(e.triangle), weights), 1.0 / e.area);
+}
+
+// A triangle close to the receiver is too large to be aimed at as a whole: at a wall, the light of a long tube that
+// hangs before it comes from a short piece of the tube. The walk down the tree goes on into such a triangle, which is
+// quartered by lines between the middles of its edges until the piece is small for its distance.
+bool isQuartered(Emitter e, Receiver r) {
+  vec3 to = r.position - e.centre;
+  return dot(to, to) < kFarPiece * e.radius2;
+}
+
+// A quarter of a piece: that at a corner, or the middle one, which is number 3. The first is its bounds alone.
+Emitter quarterOf(Emitter e, mat3 corners, int number) {
+  if (number < 3) e.centre = 0.5 * (e.centre + corners[number]);
+  e.power *= 0.25;
+  e.area *= 0.25;
+  e.radius2 *= 0.25;
+  return e;
+}
+EmitterPiece quarterOf(EmitterPiece piece, int number) {
+  EmitterPiece quarter = piece;
+  quarter.bounds = quarterOf(piece.bounds, piece.corners, number);
+  for (int i = 0; i < 3; ++i) {
+    int from = number < 3 ? number : (i + 1) % 3, to = number < 3 ? i : (i + 2) % 3;
+    quarter.corners[i] = 0.5 * (piece.corners[from] + piece.corners[to]);
+    quarter.weights[i] = 0.5 * (piece.weights[from] + piece.weights[to]);
+  }
+  return quarter;
+}
+
+// The weights of the four quarters of a piece (emitterWeight()).
+vec4 quarterWeights(EmitterPiece piece, Receiver r) {
+  vec4 weights;
+  for (int i = 0; i < 4; ++i) weights[i] = emitterWeight(quarterOf(piece.bounds, piece.corners, i), r);
+  return weights;
+}
+
+// A random piece of an emitter. choice: as in sampleEmitters(). probability: that of the choice.
+EmitterPiece samplePiece(Emitter e, Receiver r, float choice, OUT(float) probability) {
+  EmitterPiece piece = wholeOf(e);
+  probability = 1.0;
+  for (uint i = 0u; i < kMostQuarterings && isQuartered(piece.bounds, r); ++i) {
+    vec4 weights = quarterWeights(piece, r);
+    float total = dot(weights, vec4(1.0)), left = choice * total;
+    if (!(total > 0.0)) break;
+    int number = 0;
+    while (number < 3 && (left >= weights[number] || weights[number] == 0.0)) left -= weights[number++];
+    if (!(weights[number] > 0.0)) break;
+    choice = clamp(left / weights[number], 0.0, 1.0 - 1.0 / 16777216.0);
+    probability *= weights[number] / total;
+    piece = quarterOf(piece, number);
+  }
+  return piece;
+}
+
+// Density with which samplePiece() and pointOn() choose a point of an emitter, per m^2. weights: barycentric, of the
+// second and third vertex.
+float pieceDensity(Emitter e, Receiver r, vec2 weights) {
+  EmitterPiece piece = wholeOf(e);
+  vec3 inside = vec3(1.0 - weights.x - weights.y, weights);  // barycentric in the piece
+  float probability = 1.0;
+  for (uint i = 0u; i < kMostQuarterings && isQuartered(piece.bounds, r); ++i) {
+    vec4 its = quarterWeights(piece, r);
+    float total = dot(its, vec4(1.0));
+    if (!(total > 0.0)) break;
+    int number = inside.x > 0.5 ? 0 : inside.y > 0.5 ? 1 : inside.z > 0.5 ? 2 : 3;
+    probability *= its[number] / total;
+    inside = number == 3 ? 1.0 - 2.0 * inside : 2.0 * inside;
+    if (number < 3) inside[number] -= 1.0;
+    piece = quarterOf(piece, number);
+  }
+  return probability / piece.bounds.area;
 }
 
 // A random point that may light the receiver; it may be occluded. choice, u: uniform in [0, 1). The choice is rescaled
@@ -158,9 +250,10 @@ EmitterPoint sampleEmitters(Receiver r, float choice, vec2 u) {
     reached += weight;
   }
   if (!(own > 0.0)) return p;
-  p = pointOn(chosen, u);
+  float within = clamp((choice * total - reached + own) / own, 0.0, 1.0 - 1.0 / 16777216.0), ofPiece;
+  p = pointOn(samplePiece(chosen, r, within, ofPiece), u);
   if (!(dot(chosen.normal, r.position - chosen.centre) > 0.0)) p.normal = -p.normal;
-  p.density *= probability * own / total;
+  p.density *= ofPiece * probability * own / total;
   return p;
 }
 
@@ -211,9 +304,9 @@ uint placeOfEmitter(uint triangle) {
   return count;
 }
 
-// Density with which sampleEmitters() chooses points of a triangle for this receiver, per m^2; 0 if the triangle does
-// not emit towards it.
-float emitterDensity(uint triangle, Receiver r) {
+// Density with which sampleEmitters() chooses a point of a triangle for this receiver, per m^2; 0 if the triangle does
+// not emit towards it. weights: barycentric, of the second and third vertex.
+float emitterDensity(uint triangle, vec2 weights, Receiver r) {
   uvec2 range = uvec2(0u, emitterCount());
   uint place = placeOfEmitter(triangle);
   if (place >= range.y) return 0.0;
@@ -228,7 +321,7 @@ float emitterDensity(uint triangle, Receiver r) {
   }
   Emitter e = emitterAt(place);
   float own = emitterWeight(e, r);
-  return own > 0.0 ? probability * own / (leafWeight(range, r) * e.area) : 0.0;
+  return own > 0.0 ? probability * own / leafWeight(range, r) * pieceDensity(e, r, weights) : 0.0;
 }
 
 // Whether a point is within `reach` metres of a sphere; radius2: its squared radius, m^2.

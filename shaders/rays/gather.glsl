@@ -69,7 +69,7 @@ vec3 visibleShare(TracedSurface v, EmitterRay to) { return lightAlong(v.origin, 
 
 // Density with which aimedRay() chooses the direction from v to the surface `hit`, per sr; 0 if `hit` does not emit.
 float aimedDensity(TracedSurface v, TracedSurface hit) {
-  float density = surfaceShare() * emitterDensity(hit.triangle, receiverOf(v));
+  float density = surfaceShare() * emitterDensity(hit.triangle, hit.weights, receiverOf(v));
   vec3 to = hit.position - v.origin;
   float d2 = dot(to, to);
   return density * d2 * sqrt(d2) / max(abs(dot(hit.face, to)), 1e-12);

@@ -43,6 +43,11 @@ SHARED_OFFSET(EmitterNode, axis, 16)
 
 SHARED_CONSTANT uint kEmittersInLeaf = 4u;          // most emitters in a leaf
 SHARED_CONSTANT float kConeRounding = 1e-5f;        // by which cones are wider than the normals in them
+// A triangle that is closer than so many of its squared radii sends no more light for that. Within more of them it is
+// quartered, and so are its pieces, up to so many times.
+SHARED_CONSTANT float kNearPiece = 0.25f;
+SHARED_CONSTANT float kFarPiece = 4.0f;
+SHARED_CONSTANT uint kMostQuarterings = 8u;
 SHARED_CONSTANT float kLeastEmitterCosine = 1e-3f;  // of a bound, so that rounding leaves nothing out
 
 SHARED_END
