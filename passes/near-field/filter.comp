@@ -17,16 +17,16 @@ layout(std430) readonly buffer TracedGlossBlock { vec4 list[]; } tracedGloss;
 layout(std430) writeonly buffer MeansGlossBlock { vec4 list[]; } meansGloss;
 #endif
 
-layout(push_constant) uniform Constants { uint spacing; };
+layout(push_constant) uniform Constants {
+  uint spacing;
+  uint frameIndex;
+};
 
 // Weight of a tile in a row of three, by its distance from the middle.
 float rowWeight(int steps) { return steps == 0 ? kTileMiddleWeight : 1.0; }
 
 // The sample of a wide tile is at its first texel.
-int placeOf(ivec2 tile) {
-  ivec2 texel = tile * int(spacing) / 2;
-  return texel.y * int(texelCount().x) + texel.x;
-}
+uint placeOf(ivec2 tile) { return firstTexel(tileCorner(uvec2(tile), spacing, frameIndex)); }
 
 void main() {
   ivec2 count = ivec2(tileCount(spacing));
@@ -34,7 +34,8 @@ void main() {
   if (number >= count.x * count.y) return;
   ivec2 middle = ivec2(number % count.x, number / count.x);
   NearFieldTile at = tiles.list[number];
-  if (at.narrow != 0u) return;
+  bool isOutside = any(greaterThanEqual(tileCorner(uvec2(middle), spacing, frameIndex), ivec2(viewSize())));
+  if (at.narrow != 0u || isOutside) return;
   vec3 light = vec3(0.0), gloss = vec3(0.0);
   float weights = 0.0;
   ivec2 low = max(middle - 1, 0), high = at.there == 0u ? low - 1 : min(middle + 1, count - 1);
@@ -45,7 +46,7 @@ void main() {
       if (!onSamePlane(at.position, at.normal, other.position, other.normal)) continue;
       ivec2 steps = abs(ivec2(x, y) - middle);
       float weight = rowWeight(steps.x) * rowWeight(steps.y);
-      int place = placeOf(ivec2(x, y));
+      uint place = placeOf(ivec2(x, y));
       light += weight * traced.list[place].rgb;
 #if GLOSS
       gloss += weight * tracedGloss.list[place].rgb;

@@ -96,8 +96,8 @@ class NearField : public Pass {
     d.view().rays().recorded();
     declarePorts(d);
     const SizeExpr texels = ceilDiv(viewWidth(), 2) * ceilDiv(viewHeight(), 2),
-                   spacing = parameter("spacing"), columns = ceilDiv(viewWidth(), spacing),
-                   rows = ceilDiv(viewHeight(), spacing);
+                   spacing = parameter("spacing"), columns = ceilDiv(viewWidth() + spacing - 2, spacing),
+                   rows = ceilDiv(viewHeight() + spacing - 2, spacing);
     d.scratch("state", buffer("NearFieldState", sizeof(NearFieldState)), kReadWrite,
               "what is known of the rays' lengths, and what rays of this frame need to know")
         .keep(Lifetime::View);
@@ -109,7 +109,7 @@ class NearField : public Pass {
     d.scratch("tiles", buffer("NearFieldTile", sizeof(NearFieldTile), columns * rows), kReadWrite,
               "where the rays of each tile of `spacing` x `spacing` pixels leave from");
     d.scratch("items", buffer("uint", 4, texels), kReadWrite,
-              "blocks of pixels that have a sample, by their first texel, in any order");
+              "blocks of pixels that have a sample, texels or wide tiles, in any order");
     d.scratch("listed", buffer("uint", 4), kReadWrite | Usage::TransferWrite, "how many these are");
     d.scratch("dispatch", buffer("Dispatch", 4, 3), kReadWrite | Usage::Indirect | Usage::TransferWrite,
               "indirect dispatch over `items`");

@@ -16,15 +16,16 @@ COUNTERS { uint rays, shaded, gathered; } counters;
 layout(push_constant) uniform Constants {
   float foveaRadius;
   uint spacing;
+  uint frameIndex;
 } constants;
 
 // Whether a lamp is so close that its light differs within a wide block, by what the pixel in its middle shows.
-bool isCloseToEmitter(uvec2 corner) {
+bool isCloseToEmitter(ivec2 corner) {
 #if MAP_ALONE
   return false;
 #else
   if (emitterCount() == 0u) return false;
-  ivec2 middle = min(ivec2(corner + constants.spacing / 2u), ivec2(viewSize()) - 1);
+  ivec2 middle = clamp(corner + int(constants.spacing / 2u), ivec2(0), ivec2(viewSize()) - 1);
   TracedSurface v = look(vec2(middle) + 0.5);
   if (!v.there || emitted(v) != vec3(0.0)) return false;
   float angle = distance(normalize(pixelRay(middle + ivec2(1, 0))), normalize(pixelRay(middle)));
@@ -33,20 +34,23 @@ bool isCloseToEmitter(uvec2 corner) {
 }
 
 void main() {
-  uint index = gl_GlobalInvocationID.x, columns = tileCount(constants.spacing).x;
+  uint index = gl_GlobalInvocationID.x;
   if (index >= uint(tiles.list.length())) return;
-  uvec2 corner = constants.spacing * uvec2(index % columns, index / columns), texels = texelCount();
+  ivec2 corner = tileCorner(tileOf(index, constants.spacing), constants.spacing, constants.frameIndex),
+        texels = ivec2(texelCount());
   Fovea fovea = makeFovea(view.gaze, view.size, constants.foveaRadius);
-  vec2 nearest = clamp(fovea.centre, vec2(corner), vec2(corner + constants.spacing));
+  vec2 nearest = clamp(fovea.centre, vec2(corner), vec2(corner + int(constants.spacing)));
   bool narrow = distance(nearest, fovea.centre) <= fovea.radius || isCloseToEmitter(corner);
   tiles.list[index] = NearFieldTile(vec3(0.0), uint(narrow), vec3(0.0), 0u);
 
-  uvec2 first = corner / 2u, end = narrow ? min(first + constants.spacing / 2u, texels) : first + 1u;
-  uint number = (end.x - first.x) * (end.y - first.y), at = atomicAdd(listed.value, number);
+  ivec2 first = max(corner, ivec2(0)) / 2, end = min((corner + int(constants.spacing)) / 2, texels);
+  if (any(greaterThanEqual(first, end))) return;
+  uint number = narrow ? uint((end.x - first.x) * (end.y - first.y)) : 1u, at = atomicAdd(listed.value, number);
   uint groups = (at + number + kItemsInGroup - 1u) / kItemsInGroup;
   atomicMax(dispatch.list[0], min(groups, kMostGroups));
   atomicMax(dispatch.list[1], (groups + kMostGroups - 1u) / kMostGroups);
-  for (uint y = first.y; y < end.y; ++y)
-    for (uint x = first.x; x < end.x; ++x) items.list[at++] = (y * texels.x + x) | (narrow ? 0u : kWideItem);
+  if (!narrow) items.list[at] = index | kWideItem;
+  for (int y = first.y; narrow && y < end.y; ++y)
+    for (int x = first.x; x < end.x; ++x) items.list[at++] = uint(y * texels.x + x);
   atomicAdd(counters.rays, rayCount);
 }

@@ -50,34 +50,51 @@ float underLobe(vec3 direction, float cosine) { return response(lobe, direction,
 float underLobe(vec3 direction, float cosine) { return 1.0; }
 #endif
 
-uvec2 pixelOf(uint turn_, uvec2 corner, uint side) { return corner + samplePixel(turn_, side, corner / side); }
+// A block of pixels that has a sample.
+struct Block {
+  uint side;     // pixels
+  uvec2 number;  // in x and y
+  ivec2 corner;  // its first pixel, which may lie outside the view
+  uint place;    // of its sample in `traced`
+};
 
-TracedSurface seenIn(uint turn_, uvec2 corner, uint side) {
-  uvec2 pixel = pixelOf(turn_, corner, side);
-  if (any(greaterThanEqual(pixel, viewSize()))) return kNothingTraced;
-  return look(vec2(pixel) + 0.5);
+Block blockOf(uint item) {
+  uint index = item & ~kWideItem;
+  if (index == item) {
+    uvec2 texel = uvec2(index % texelCount().x, index / texelCount().x);
+    return Block(2u, texel, ivec2(2u * texel), index);
+  }
+  uvec2 tile = tileOf(index, constants.spacing);
+  ivec2 corner = tileCorner(tile, constants.spacing, constants.frameIndex);
+  return Block(constants.spacing, tile, corner, firstTexel(corner));
 }
+
+ivec2 pixelOf(uint turn_, Block block) {
+  ivec2 pixel = block.corner + ivec2(samplePixel(turn_, block.side, block.number));
+  return clamp(pixel, ivec2(0), ivec2(viewSize()) - 1);
+}
+
+TracedSurface seenIn(uint turn_, Block block) { return look(vec2(pixelOf(turn_, block)) + 0.5); }
 
 void main() {
   uint number = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
   if (number >= listed.value) return;
-  uint item = items.list[number], index = item & ~kWideItem;
-  bool wide = item != index;
-  uvec2 texel = uvec2(index % texelCount().x, index / texelCount().x), corner = 2u * texel;
-  uint side = wide ? constants.spacing : 2u, rays = side == 2u ? state.value.foveaRays : 1u;
-  uvec2 block = corner / side;
+  uint item = items.list[number];
+  Block block = blockOf(item);
+  bool wide = (item & kWideItem) != 0u;
+  uint rays = block.side == 2u ? state.value.foveaRays : 1u;
   // Rays leave from the surface of the first turn's pixel, too, where another pixel shows another surface.
-  TracedSurface at = seenIn(constants.frameIndex, corner, side), v = at;
-  if (constants.part > 0u) v = seenIn(constants.frameIndex + constants.part, corner, side);
+  TracedSurface at = seenIn(constants.frameIndex, block), v = at;
+  if (constants.part > 0u) v = seenIn(constants.frameIndex + constants.part, block);
   bool leavesFirst = !v.there || !onSamePlane(at.position, at.normal, v.position, v.normal);
   if (leavesFirst) v = at;
 #if LOBES
   uint turn_ = leavesFirst ? constants.frameIndex : constants.frameIndex + constants.part;
-  if (v.there) lobe = receiverLobe(ivec2(min(pixelOf(turn_, corner, side), viewSize() - 1u)), v.position);
+  if (v.there) lobe = receiverLobe(pixelOf(turn_, block), v.position);
 #endif
   NearLight sum = NearLight(vec3(0.0), vec3(0.0));
   for (uint i = 0u; at.there && i < rays; ++i) {
-    NearLight its = nearLight(v, block, rays * (constants.frameIndex + constants.part) + i, constants.bounces,
+    NearLight its = nearLight(v, block.number, rays * (constants.frameIndex + constants.part) + i, constants.bounces,
                               constants.emitterPoints);
     sum.light += its.light;
     sum.gloss += its.gloss;
@@ -85,16 +102,16 @@ void main() {
   sum.light /= float(rays * constants.parts);
   sum.gloss /= float(rays * constants.parts);
 
-  uvec2 inside = samplePixel(constants.frameIndex, side, block);
-  uint code = side | inside.x << 4 | inside.y << 7 | (at.there ? 0u : 1u << 10);
-  traced.list[index] = vec4(sum.light + (constants.part > 0u ? vec3(traced.list[index]) : vec3(0.0)), float(code));
+  uvec2 inside = samplePixel(constants.frameIndex, block.side, block.number);
+  uint code = block.side | inside.x << 4 | inside.y << 7 | (at.there ? 0u : 1u << 10);
+  if (constants.part > 0u) sum.light += vec3(traced.list[block.place]);
+  traced.list[block.place] = vec4(sum.light, float(code));
 #if GLOSS
-  tracedGloss.list[index] = vec4(sum.gloss + (constants.part > 0u ? vec3(tracedGloss.list[index]) : vec3(0.0)), 0.0);
+  if (constants.part > 0u) sum.gloss += vec3(tracedGloss.list[block.place]);
+  tracedGloss.list[block.place] = vec4(sum.gloss, 0.0);
 #endif
-  if (wide && constants.part == 0u) {
-    uint tile = corner.y / constants.spacing * tileCount(constants.spacing).x + corner.x / constants.spacing;
-    tiles.list[tile] = NearFieldTile(at.position, 0u, at.normal, uint(at.there));
-  }
+  if (wide && constants.part == 0u)
+    tiles.list[item & ~kWideItem] = NearFieldTile(at.position, 0u, at.normal, uint(at.there));
   atomicAdd(counters.rays, rayCount);
   atomicAdd(counters.shaded, shadedCount);
   atomicAdd(counters.gathered, gatherCount);

@@ -16,13 +16,15 @@ layout(std430) readonly buffer MeansGlossBlock { vec4 list[]; } meansGloss;
 layout(rgba16f) uniform writeonly image2D gloss;
 #endif
 
-layout(push_constant) uniform Constants { uint spacing; };
+layout(push_constant) uniform Constants {
+  uint spacing;
+  uint frameIndex;
+};
 
 void main() {
   uvec2 texel = gl_GlobalInvocationID.xy;
   if (any(greaterThanEqual(texel, texelCount()))) return;
-  uvec2 tile = 2u * texel / spacing;
-  uint number = tile.y * tileCount(spacing).x + tile.x, place = texel.y * texelCount().x + texel.x;
+  uint number = tileNumber(2u * texel, spacing, frameIndex), place = texel.y * texelCount().x + texel.x;
   bool narrow = tiles.list[number].narrow != 0u;
   vec4 light = narrow ? traced.list[place] : means.list[number];
   imageStore(samples, ivec2(texel), vec4(min(light.rgb, 65504.0), light.a));

@@ -3,6 +3,7 @@
 // same surface. Defines: BLOCKS 0/1, 1 if a texel of `samples` stands for several pixels; CHANGES 0/1, 1 if `change`
 // says by how much light has changed; GLOSS 0/1, 1 if there is other light at the same pixels.
 #include "device/half.glsl"
+#include "screen/lattice.glsl"
 #include "screen/same_surface.glsl"
 
 // Images rather than textures, which cost several times as much on a CPU device.
@@ -37,6 +38,7 @@ layout(push_constant) uniform Constants {
   int shift;             // a texel of `samples` is 2^shift pixels wide
   float wideWeight;      // of a sample whose block is wider than that
   float changedWeight;   // of a sample if all light has changed
+  uint frameIndex;
 #else
   float mostOfOthers;    // frames that the history of another estimate may count
 #endif
@@ -102,7 +104,8 @@ Sample sampleAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
   vec4 value = imageLoad(samples, inside >> shift);
   int code = int(abs(value.a)), side = max(code & 15, 1);
   bool found = p == inside && code >> 10 == 0;
-  ivec2 from = min((inside & -side) + ivec2(code >> 4 & 7, code >> 7 & 7), size - 1);
+  ivec2 offset = ivec2(latticeOffset(frameIndex, uint(side))), corner = ((inside + offset) & -side) - offset;
+  ivec2 from = clamp(corner + ivec2(code >> 4 & 7, code >> 7 & 7), ivec2(0), size - 1);
   bool own = found && sameSurface(position.xyz, normal, normal, imageLoad(gbufferPosition, from),
                                   imageLoad(gbufferNormal, from).xyz, planeTolerance * position.w, leastCos);
   return Sample(withGloss(value.rgb, inside >> shift), side, found, value.a >= 0.0, own);

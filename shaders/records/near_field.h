@@ -51,6 +51,6 @@ struct NearFieldTile {
 SHARED_SIZE(NearFieldTile, 32)
 
 SHARED_CONSTANT uint kWideItem =
-    0x80000000u;  // in an item, beside its texel: the sample is that of a wide tile
+    0x80000000u;  // in an item, beside the number of a tile: the sample is that of a wide tile, not of a texel
 
 SHARED_END

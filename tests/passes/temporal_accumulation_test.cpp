@@ -106,6 +106,27 @@ TEST(TemporalAccumulation, BlocksOfEightChangeLess) {
   EXPECT_GT(own, 1000);
 }
 
+// A wide block lies where the lattice is in this frame, and its sample counts for those of its pixels that show the same
+// surface as the sampled one.
+TEST(TemporalAccumulation, WideBlocksLieElsewhereInEachFrame) {
+  const Eye eye({0, 0, 0});
+  const glm::uvec2 place(3, 6);
+  ASSERT_NE(passes::latticeOffset(1, 8), glm::uvec2(0));
+  const auto got = accumulate(eye, everywhere(kSize / 2, {9, 9, 9, passes::sampleCode(8, place, true)}),
+                              everywhere(kSize, {1, 1, 1, 4}), 1, ownPlaces(), 1);
+  int own = 0, other = 0;
+  for (int y = 0; y < kSize.y; ++y)
+    for (int x = 0; x < kSize.x; ++x) {
+      const glm::ivec2 from =
+          glm::clamp(passes::blockCorner({x, y}, 8, 1) + glm::ivec2(place), glm::ivec2(0), kSize - 1);
+      const bool mine = sameSurface(eye.seen.at(x, y), eye.seen.at(from.x, from.y));
+      EXPECT_EQ(got[4 * size_t(y * kSize.x + x) + 3], mine ? 5 : 4) << x << " " << y;
+      ++(mine ? own : other);
+    }
+  EXPECT_GT(own, 1000);
+  EXPECT_GT(other, 30);
+}
+
 // For the frames after a jump of the gaze, a sample in the fovea is the mean of more rays and counts as many times, and
 // the history of wide blocks counts less; blocks outside have one ray as ever.
 TEST(TemporalAccumulation, SamplesWeighMoreAfterASaccade) {

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "framework/base/random.h"
+
 namespace fovea::passes {
 
 // Code of a sample, as pass temporal-accumulation reads it; exact in half precision. Bits 0 to 3: width of the block
@@ -24,6 +26,19 @@ inline glm::uvec2 samplePixel(uint32_t turn, uint32_t side, glm::uvec2 block) {
     p.y += ((turn ^ turn >> 1) & 1u) * bit;
   }
   return p;
+}
+
+// How far the first blocks of side x side pixels begin before the picture: the R2 sequence over the frames, in steps of
+// two pixels. As a plain reference for shaders/screen/lattice.glsl.
+inline glm::uvec2 latticeOffset(uint32_t frame, uint32_t side) {
+  const glm::vec2 at(uniformFloat(frame * 3242174889u), uniformFloat(frame * 2447445414u));
+  return 2u * glm::uvec2(at * float(side / 2));
+}
+
+// The first pixel, which may lie outside the picture, of the block that holds a pixel.
+inline glm::ivec2 blockCorner(glm::ivec2 pixel, uint32_t side, uint32_t frame) {
+  const glm::ivec2 offset(latticeOffset(frame, side));
+  return (pixel + offset) / int(side) * int(side) - offset;
 }
 
 }  // namespace fovea::passes
