@@ -234,11 +234,16 @@ INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes,
                                          Expected{"room", 476000}, Expected{"yard", 516000}),
                          [](const auto& info) { return std::string(info.param.name); });
 
-const Expected kValidation[] = {
-    {"alley", 82500, true, true, 0},   {"dollhouse", 132300, false, true, 2},
-    {"gallery", 58000, true, true, 0}, {"greenhouse", 112600, true, true, 1},
-    {"hangar", 35300, true, true, 1},  {"lounge", 86000, true, true, 4},
-    {"workshop", 35600, true, true, 1}};  // no validation scene, but checked as one
+const Expected kValidation[] = {{"alley", 82500, true, true, 0},
+                                {"dollhouse", 132300, false, true, 2},
+                                {"gallery", 58000, true, true, 0},
+                                {"greenhouse", 112600, true, true, 1},
+                                {"hangar", 35300, true, true, 1},
+                                {"laundry", 71200, true, true, 0},
+                                {"lounge", 86000, true, true, 4},
+                                // No validation scenes, but checked as such.
+                                {"garage", 61200, true, true, 0},
+                                {"workshop", 35600, true, true, 1}};
 const Expected kStress[] = {{"ballroom", 33200, true, true, 100},
                             {"doorway", 55700, true, true, 1, 2.0},
                             {"night_window", 76400, true, true, 1},
