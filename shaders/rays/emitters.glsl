@@ -141,6 +141,7 @@ struct EmitterPiece {
   mat3 weights;    // of the corners in the triangle, barycentric
 };
 
+// All of a triangle as one piece.
 EmitterPiece wholeOf(Emitter e) { return EmitterPiece(e, cornersOf(e.triangle), mat3(1.0)); }
 
 // A point of an emitter, or of a piece of it, on its front. u: uniform in [0, 1).
