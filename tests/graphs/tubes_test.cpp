@@ -33,6 +33,9 @@ scene::Scene tubeRoom() {
   s.materials[tube].emission = glm::vec3(20);
   addTube(s, tube, {-0.5f, kHalf - 0.06f, 0}, {0, 0, 1}, {1, 0, 0});  // below the ceiling
   addTube(s, tube, {0.7f, 0, 0.05f - kHalf}, {0, 1, 0}, {1, 0, 0});   // upright before the back wall
+  const uint32_t tray = addMaterial(s, glm::vec3(0.8f));
+  addQuad(s, tray, {-0.55f, kHalf - 0.03f, -0.7f}, {0.1f, 0, 0}, {0, 0, 1.4f});
+  addQuad(s, tray, {0.65f, -0.7f, 0.02f - kHalf}, {0.1f, 0, 0}, {0, 1.4f, 0});
   s.cameras.emplace_back();
   s.cameras[0].position = {0, 0, 1.2f};
   s.cameras[0].verticalFov = 2 * std::atan(0.8f);
@@ -70,15 +73,16 @@ std::vector<double> lightOfParts(const std::string& graph, uint32_t seed, uint32
   return light;
 }
 
+// With rays aimed at any point of a tube, a seed is off by up to 0.17.
 TEST(Tubes, WallsAndCeilingKeepTheirLight) {
   const std::vector<double> want = lightOfParts("reference", 1, 1, {"spp=2048"});
-  constexpr uint32_t kSeeds = 4;
+  constexpr uint32_t kSeeds = 8;
   std::vector<double> got(kParts.size());
   for (uint32_t seed = 1; seed <= kSeeds; ++seed) {
     const std::vector<double> its = lightOfParts("foveal", seed, 4, {});
     for (size_t i = 0; i < got.size(); ++i) {
       got[i] += its[i] / kSeeds;
-      EXPECT_NEAR(its[i], want[i], 0.15 * want[i]) << kParts[i].name << ", seed " << seed;
+      EXPECT_NEAR(its[i], want[i], 0.13 * want[i]) << kParts[i].name << ", seed " << seed;
     }
   }
   for (size_t i = 0; i < got.size(); ++i) EXPECT_NEAR(got[i], want[i], 0.06 * want[i]) << kParts[i].name;
