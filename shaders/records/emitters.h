@@ -41,8 +41,8 @@ struct EmitterNode {
 SHARED_SIZE(EmitterNode, 48)
 SHARED_OFFSET(EmitterNode, axis, 16)
 
-SHARED_CONSTANT uint kEmittersInLeaf = 4u;          // most emitters in a leaf
-SHARED_CONSTANT float kConeRounding = 1e-5f;        // by which cones are wider than the normals in them
+SHARED_CONSTANT uint kEmittersInLeaf = 4u;    // most emitters in a leaf
+SHARED_CONSTANT float kConeRounding = 1e-5f;  // by which cones are wider than the normals in them
 // A triangle that is closer than so many of its squared radii sends no more light for that. Within more of them it is
 // quartered, and so are its pieces, up to so many times.
 SHARED_CONSTANT float kNearPiece = 0.25f;
