@@ -162,7 +162,8 @@ bool isQuartered(Emitter e, Receiver r) {
   return dot(to, to) < kFarPiece * e.radius2;
 }
 
-// A quarter of a piece: that at a corner, or the middle one, which is number 3. The first is its bounds alone.
+// A quarter of a piece. Quarters 0 to 2 lie at its corners, and quarter 3 lies between them. The first function returns
+// the bounds of the quarter alone, for which it needs those of the piece and its corners.
 Emitter quarterOf(Emitter e, mat3 corners, int number) {
   if (number < 3) e.centre = 0.5 * (e.centre + corners[number]);
   e.power *= 0.25;
@@ -209,6 +210,7 @@ EmitterPiece samplePiece(Emitter e, Receiver r, float choice, OUT(float) probabi
 // Density with which samplePiece() and pointOn() choose a point of an emitter, per m^2. weights: barycentric, of the
 // second and third vertex.
 float pieceDensity(Emitter e, Receiver r, vec2 weights) {
+  if (!isQuartered(e, r)) return 1.0 / e.area;
   EmitterPiece piece = wholeOf(e);
   vec3 inside = vec3(1.0 - weights.x - weights.y, weights);  // barycentric in the piece
   float probability = 1.0;

@@ -39,7 +39,7 @@ vec3 normalToObject(uint object, vec3 n) { return normalize(transpose(mat3(objec
 // below 2^24); y, z: weights of its second and third vertex. A direction keeps its components along triangleAxes().
 
 // The place in the triangle that is nearest to `position`, world space, m (Ericson, "Real-Time Collision Detection",
-// 2005, 5.1.5). triangle: past frame.firstMovingTriangle.
+// 2005, 5.1.5). triangle: its number, counted from frame.firstMovingTriangle.
 vec3 attach(uint triangle, vec3 position) {
   uvec4 t = sceneTriangle(frame.firstMovingTriangle + triangle);
   vec3 a = scenePosition(t.x), ab = scenePosition(t.y) - a, ac = scenePosition(t.z) - a, ap = position - a;
@@ -78,7 +78,7 @@ mat3 axesOf(mat3 corners) {
   n = normalize(n);
   return mat3(edge, cross(n, edge), n);
 }
-// The same of a triangle, given by its number past frame.firstMovingTriangle.
+// The axes of a triangle as it is now. triangle: its number, counted from frame.firstMovingTriangle.
 mat3 triangleAxes(uint triangle) { return axesOf(cornersNow(sceneTriangle(frame.firstMovingTriangle + triangle))); }
 
 #endif

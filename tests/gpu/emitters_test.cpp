@@ -232,7 +232,7 @@ TEST(DeviceEmitters, WhatSendsMoreLightIsChosenMoreOften) {
 }
 
 // The light of a long narrow panel that hangs before a wall comes, at the wall, from a short piece of the panel, at which
-// rays are aimed. Aimed at the panel as a whole, the light of one ray would vary by five times its mean.
+// rays are aimed. Aimed at the panel as a whole, the light of one ray would vary by five to seven times its mean.
 TEST(DeviceEmitters, LongPanelIsAimedAtWhereItIsNear) {
   Scene scene;
   scene.cameras.emplace_back();

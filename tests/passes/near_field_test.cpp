@@ -274,7 +274,8 @@ TEST_P(NearField, SamplesWhereTheEyeLooks) {
         const int code = int(v.a);
         ASSERT_EQ(code % 16, side);
         ASSERT_EQ(glm::uvec2(code / 16 % 8, code / 128 % 8), own);
-        if (isThere(p - glm::ivec2(1, 0)) != isThere(p + glm::ivec2(1, 0))) continue;  // rounding decides
+        // At a silhouette, rounding decides whether the pixel shows a surface.
+        if (isThere(p - glm::ivec2(1, 0)) != isThere(p + glm::ivec2(1, 0))) continue;
         ASSERT_EQ(code / 1024, there ? 0 : 1) << x << " " << y;
         if (!there) {
           EXPECT_EQ(glm::vec3(v), glm::vec3(0));
@@ -328,8 +329,8 @@ void lookAtOneTile(NearFieldTest& test, int spacing) {
   test.beforeFrame([](PassTest&, scene::Frame& frame) { frame.views[0].gaze = {0.1f, 0.1f}; });
 }
 
-// In blocks of 2 x 2 pixels four frames suffice; the pixels of wide blocks, which lie elsewhere in each frame, have theirs
-// at random.
+// In four frames, each pixel of a block of 2 x 2 pixels is sampled. Wide blocks lie elsewhere in each frame, and their
+// pixels are sampled in no regular order.
 TEST_P(NearField, EveryPixelHasItsTurn) {
   for (const uint32_t spacing : {4u, 8u}) {
     const int texels = int(2 * spacing), size = 2 * texels;
@@ -357,7 +358,8 @@ TEST_P(NearField, EveryPixelHasItsTurn) {
   }
 }
 
-// Over the frames, blocks of 8 pixels begin in each of the 16 possible places.
+// Over 64 frames, blocks of 8 x 8 pixels begin in each of the 16 possible places. SamplesWhereTheEyeLooks shows that the
+// pass does as this reference does.
 TEST(NearFieldLight, BlocksLieEverywhereInTheirTurn) {
   std::map<std::pair<uint32_t, uint32_t>, int> counts;
   for (uint32_t frame = 0; frame < 64; ++frame) {

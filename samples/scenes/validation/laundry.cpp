@@ -70,7 +70,7 @@ Palette makePalette(SceneBuilder& b) {
   return p;
 }
 
-// `count` tubes along x, side by side, in a fitting on the plane z = 0 that lights along +z.
+// A fitting on the plane z = 0 with `count` tubes along x, side by side. They light what lies before it, along +z.
 void addFitting(MeshBuilder& m, const Palette& p, float length, int count, const glm::mat4& where) {
   const float half = 0.5f * length, pitch = 0.08f, axis = 0.05f,
               wide = 0.5f * pitch * float(count - 1) + 0.035f;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 namespace fovea::scene::model {
 namespace {
@@ -13,7 +14,7 @@ constexpr float kRearDeep = 0.13f, kNoseDeep = 0.22f;          // of the rounded
 constexpr float kAxle = 1.12f, kHub = 0.29f, kArch = 0.345f;   // wheels and the openings around them
 constexpr float kWidth = 0.77f, kBelt = 0.70f, kRoof = 1.37f;  // half of the width; the cabin
 constexpr float kSquare = 5;                                   // exponent of the superellipses
-constexpr float kHalfPi = 1.5707963f;
+constexpr float kHalfPi = glm::half_pi<float>();
 
 float topAt(float z) {
   return z < 0.5f ? 0.88f : 0.88f - 0.13f * smoothstep(0.4f, 2.0f, z) - 0.03f * (z - 0.5f);
