@@ -1,8 +1,7 @@
 // VK_LAYER_FOVEA_faults: a Vulkan layer that makes functions fail (fault.h). It intercepts the functions that return a
 // result and that the framework calls. Their calls are listed in the file that FOVEA_CALLS names, one per line. It
 // serves one instance and one device at a time, from one thread.
-#include <vulkan/vk_layer.h>
-#include <vulkan/vulkan.h>
+#include "tests/support/vulkan_layer.h"
 
 #include <cstdio>
 #include <cstring>
@@ -10,6 +9,8 @@
 #include "fault.h"
 
 namespace {
+
+namespace layer = fovea::test::layer;
 
 // clang-format off
 #define FOVEA_INSTANCE_FUNCTIONS(F) \
@@ -63,39 +64,16 @@ FOVEA_DEVICE_FUNCTIONS(FOVEA_DEFINE)
 FOVEA_DEFINE(vkCreateInstance)
 FOVEA_DEFINE(vkCreateDevice)
 
-PFN_vkGetInstanceProcAddr nextOfInstance = nullptr;
-PFN_vkGetDeviceProcAddr nextOfDevice = nullptr;
-
-// The link to the next layer that the loader puts into the chain of a create info.
-template <class Link>
-Link* linkIn(const void* chain, VkStructureType type) {
-  auto* link = const_cast<Link*>(static_cast<const Link*>(chain));
-  while (link && (link->sType != type || link->function != VK_LAYER_LINK_INFO))
-    link = const_cast<Link*>(static_cast<const Link*>(link->pNext));
-  return link;
-}
-
 VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info,
                                               const VkAllocationCallbacks* callbacks, VkInstance* instance) {
   if (const auto result = fault(vkCreateInstance_.faults, "vkCreateInstance")) return *result;
-  auto* link = linkIn<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
-  if (!link) return VK_ERROR_INITIALIZATION_FAILED;
-  nextOfInstance = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-  const auto create = reinterpret_cast<PFN_vkCreateInstance>(nextOfInstance(nullptr, "vkCreateInstance"));
-  return create(info, callbacks, instance);
+  return layer::createInstance(info, callbacks, instance);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
                                             const VkAllocationCallbacks* callbacks, VkDevice* device) {
   if (const auto result = fault(vkCreateDevice_.faults, "vkCreateDevice")) return *result;
-  auto* link = linkIn<VkLayerDeviceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO);
-  if (!link) return VK_ERROR_INITIALIZATION_FAILED;
-  const auto functions = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-  nextOfDevice = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
-  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-  return reinterpret_cast<PFN_vkCreateDevice>(functions(nullptr, "vkCreateDevice"))(physical, info, callbacks,
-                                                                                    device);
+  return layer::createDevice(physical, info, callbacks, device);
 }
 
 template <auto& function>
@@ -107,7 +85,7 @@ PFN_vkVoidFunction between(PFN_vkVoidFunction next) {
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ofDevice(VkDevice device, const char* name) {
   if (!std::strcmp(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofDevice);
-  const PFN_vkVoidFunction next = nextOfDevice(device, name);
+  const PFN_vkVoidFunction next = layer::nextOfDevice(device, name);
 #define FOVEA_BETWEEN(function) \
   if (!std::strcmp(name, #function)) return between<function##_>(next);
   FOVEA_DEVICE_FUNCTIONS(FOVEA_BETWEEN)
@@ -119,17 +97,14 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ofInstance(VkInstance instance, const c
   if (!std::strcmp(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofDevice);
   if (!std::strcmp(name, "vkCreateInstance")) return reinterpret_cast<PFN_vkVoidFunction>(&createInstance);
   if (!std::strcmp(name, "vkCreateDevice")) return reinterpret_cast<PFN_vkVoidFunction>(&createDevice);
-  const PFN_vkVoidFunction next = nextOfInstance ? nextOfInstance(instance, name) : nullptr;
+  const PFN_vkVoidFunction next = layer::nextOfInstance ? layer::nextOfInstance(instance, name) : nullptr;
   FOVEA_INSTANCE_FUNCTIONS(FOVEA_BETWEEN)
   return next;
 }
 
 }  // namespace
 
-extern "C" VK_LAYER_EXPORT VkResult vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* layer) {
-  layer->loaderLayerInterfaceVersion = CURRENT_LOADER_LAYER_INTERFACE_VERSION;
-  layer->pfnGetInstanceProcAddr = ofInstance;
-  layer->pfnGetDeviceProcAddr = ofDevice;
-  layer->pfnGetPhysicalDeviceProcAddr = nullptr;
-  return VK_SUCCESS;
+extern "C" VK_LAYER_EXPORT VkResult
+vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* interface) {
+  return layer::negotiate(interface, ofInstance, ofDevice);
 }
