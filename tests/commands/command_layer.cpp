@@ -1,16 +1,15 @@
-// VK_LAYER_FOVEA_commands: a Vulkan layer that counts the commands of frames, on a driver that does not execute them. At
-// every submit it appends a line to the file that FOVEA_COMMANDS names: how often each function was called since the one
-// before, as JSON. The drivers for this offer too little, so it also reports more features and larger limits than
-// they do.
+// VK_LAYER_FOVEA_commands: a Vulkan layer that counts the commands of frames on a driver that does not execute them. At
+// every submit it appends a line of JSON to the file that FOVEA_COMMANDS names: how often each function has been called
+// since the submit before. Such drivers report few features and small limits, so the layer raises both.
 #include "tests/support/vulkan_layer.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <string>
 #include <type_traits>
-#include <utility>
 
 namespace {
 
@@ -24,9 +23,10 @@ namespace layer = fovea::test::layer;
   F(vkCmdDrawIndirect) F(vkCmdFillBuffer) F(vkCmdPipelineBarrier2) F(vkCmdPushDescriptorSetKHR) \
   F(vkCmdWriteTimestamp2) F(vkCreateComputePipelines) F(vkCreateGraphicsPipelines) F(vkDeviceWaitIdle) \
   F(vkUpdateDescriptorSets) F(vkWaitForFences)
-#define FOVEA_RAISED(F) \
-  F(vkGetPhysicalDeviceFeatures2) F(vkGetPhysicalDeviceFormatProperties) F(vkGetPhysicalDeviceImageFormatProperties) \
-  F(vkGetPhysicalDeviceProperties) F(vkGetPhysicalDeviceProperties2)
+#define FOVEA_REPLACED(F) \
+  F(vkGetPhysicalDeviceFeatures2, featuresOf) F(vkGetPhysicalDeviceFormatProperties, formatOf) \
+  F(vkGetPhysicalDeviceImageFormatProperties, imageOf) F(vkGetPhysicalDeviceProperties, propertiesOf) \
+  F(vkGetPhysicalDeviceProperties2, moreOf)
 // clang-format on
 
 std::map<std::string, unsigned> counts;
@@ -51,9 +51,9 @@ struct Function<Result(VKAPI_PTR*)(Arguments...)> {
   Pfn next = nullptr;
 };
 
-#define FOVEA_DEFINE(function) Function<PFN_##function> function##_{#function};
+#define FOVEA_DEFINE(function, ...) Function<PFN_##function> function##_{#function};
 FOVEA_COUNTED(FOVEA_DEFINE)
-FOVEA_RAISED(FOVEA_DEFINE)
+FOVEA_REPLACED(FOVEA_DEFINE)
 FOVEA_DEFINE(vkQueueSubmit2)
 
 template <auto& function>
@@ -88,8 +88,7 @@ VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, uint32_t count, const VkSub
 template <class Features>
 void enable(void* features, VkBool32 Features::*first) {
   auto* begin = &(static_cast<Features*>(features)->*first);
-  const auto* end = reinterpret_cast<VkBool32*>(static_cast<Features*>(features) + 1);
-  while (begin + 1 <= end) *begin++ = VK_TRUE;
+  std::fill(begin, reinterpret_cast<VkBool32*>(static_cast<Features*>(features) + 1), VK_TRUE);
 }
 
 VKAPI_ATTR void VKAPI_CALL featuresOf(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* features) {
@@ -173,46 +172,18 @@ PFN_vkVoidFunction replaced(Function<Pfn>& function, PFN_vkVoidFunction next, Re
 
 // ---- The layer ------------------------------------------------------------------------------------------------------
 
-VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info,
-                                              const VkAllocationCallbacks* callbacks, VkInstance* instance) {
-  return layer::createInstance(info, callbacks, instance);
-}
-
-VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
-                                            const VkAllocationCallbacks* callbacks, VkDevice* device) {
-  return layer::createDevice(physical, info, callbacks, device);
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ofDevice(VkDevice device, const char* name) {
-  if (!std::strcmp(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofDevice);
-  const PFN_vkVoidFunction next = layer::nextOfDevice(device, name);
+PFN_vkVoidFunction ofDevice(const char* name, PFN_vkVoidFunction next) {
   if (!std::strcmp(name, "vkQueueSubmit2")) return replaced(vkQueueSubmit2_, next, submit);
-#define FOVEA_BETWEEN(function) \
+#define FOVEA_COUNT(function) \
   if (!std::strcmp(name, #function)) return counted<function##_>(next);
-  FOVEA_COUNTED(FOVEA_BETWEEN)
+  FOVEA_COUNTED(FOVEA_COUNT)
   return next;
 }
 
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ofInstance(VkInstance instance, const char* name) {
-  if (!std::strcmp(name, "vkGetInstanceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofInstance);
-  if (!std::strcmp(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofDevice);
-  if (!std::strcmp(name, "vkCreateInstance")) return reinterpret_cast<PFN_vkVoidFunction>(&createInstance);
-  if (!std::strcmp(name, "vkCreateDevice")) return reinterpret_cast<PFN_vkVoidFunction>(&createDevice);
-  const PFN_vkVoidFunction next = layer::nextOfInstance ? layer::nextOfInstance(instance, name) : nullptr;
-  const std::pair<const char*, PFN_vkVoidFunction (*)(PFN_vkVoidFunction)> raised[] = {
-      {"vkGetPhysicalDeviceFeatures2",
-       [](PFN_vkVoidFunction f) { return replaced(vkGetPhysicalDeviceFeatures2_, f, featuresOf); }},
-      {"vkGetPhysicalDeviceProperties",
-       [](PFN_vkVoidFunction f) { return replaced(vkGetPhysicalDeviceProperties_, f, propertiesOf); }},
-      {"vkGetPhysicalDeviceProperties2",
-       [](PFN_vkVoidFunction f) { return replaced(vkGetPhysicalDeviceProperties2_, f, moreOf); }},
-      {"vkGetPhysicalDeviceFormatProperties",
-       [](PFN_vkVoidFunction f) { return replaced(vkGetPhysicalDeviceFormatProperties_, f, formatOf); }},
-      {"vkGetPhysicalDeviceImageFormatProperties",
-       [](PFN_vkVoidFunction f) { return replaced(vkGetPhysicalDeviceImageFormatProperties_, f, imageOf); }}};
-  for (const auto& [function, between] : raised) {
-    if (!std::strcmp(name, function)) return between(next);
-  }
+PFN_vkVoidFunction ofInstance(const char* name, PFN_vkVoidFunction next) {
+#define FOVEA_REPLACE(function, replacement) \
+  if (!std::strcmp(name, #function)) return replaced(function##_, next, replacement);
+  FOVEA_REPLACED(FOVEA_REPLACE)
   return next;
 }
 
@@ -220,5 +191,5 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ofInstance(VkInstance instance, const c
 
 extern "C" VK_LAYER_EXPORT VkResult
 vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* interface) {
-  return layer::negotiate(interface, ofInstance, ofDevice);
+  return layer::negotiate(interface, {ofInstance, ofDevice});
 }

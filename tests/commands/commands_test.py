@@ -2,9 +2,9 @@
 
 Usage: FOVEA_TEST_COMMANDS=FOLDER commands_test.py PROGRAM SOURCE_DIR [CLASS...]
 
-The folder holds command_layer.so and command_layer.json. The driver is the mock driver that comes with Chromium; without
-it the test is skipped. frame_commands.csv lists what the tests expect; FOVEA_COMMANDS_WRITE=1 writes it anew, after which
-the changes have to be reviewed.
+The folder holds command_layer.so and command_layer.json. The driver is the mock driver that comes with Chromium. Without
+it the test is skipped. frame_commands.csv lists the counts that are expected. FOVEA_COMMANDS_WRITE=1 writes that file
+anew; its changes then have to be reviewed.
 """
 
 import csv
@@ -18,8 +18,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
 from program import SOURCE, CliTest  # noqa: E402
 
 LAYER = os.environ.get("FOVEA_TEST_COMMANDS", "")
-DRIVER = next((path for path in map(pathlib.Path, (
-    "/usr/lib/chromium/libVkICD_mock_icd.so", "/usr/lib64/chromium-browser/libVkICD_mock_icd.so")) if path.exists()), None)
+DRIVER = pathlib.Path("/usr/lib/chromium/libVkICD_mock_icd.so")
 TABLE = pathlib.Path(__file__).with_name("frame_commands.csv")
 # What is counted, by columns of the table, and what must not happen in a frame.
 COLUMNS = {"dispatches": ["vkCmdDispatch"], "indirect_dispatches": ["vkCmdDispatchIndirect"],
@@ -35,7 +34,7 @@ GRAPHS = sorted({path.relative_to(SOURCE / "graphs").with_suffix("").as_posix()
                 - {"fovea-graph.schema", "reference", "alternatives/pt_denoised"})
 
 
-@unittest.skipUnless(DRIVER, "there is no mock driver of Vulkan (libVkICD_mock_icd.so of chromium-common)")
+@unittest.skipUnless(DRIVER.exists(), "there is no mock driver of Vulkan (libVkICD_mock_icd.so of chromium-common)")
 class Commands(CliTest):
     maxDiff = None
 
@@ -54,11 +53,15 @@ class Commands(CliTest):
         found = {}
         for graph in GRAPHS:
             with self.subTest(graph=graph):
-                # Each frame is one submit: the last two lines are two frames.
-                before, last = self.frames(graph, 4)[-2:]
-                self.assertEqual(before, last)
-                self.assertEqual([name for name in NEVER if name in last], [])
-                self.assertEqual(last["vkWaitForFences"], 1)  # for its slot
+                # Each frame is one submit, so the last four lines are the four frames, of which the first also sets up
+                # the graph. As things move, the number of draws may differ from frame to frame.
+                first, *others = self.frames(graph, 4)[-4:]
+                last = others[-1]
+                self.assertIn("vkAllocateMemory", first)
+                for frame in others:
+                    self.assertEqual([name for name in NEVER if name in frame], [])
+                    self.assertEqual(frame["vkWaitForFences"], 1)  # for its slot
+                    self.assertEqual({**frame, "vkCmdDrawIndexed": 0}, {**last, "vkCmdDrawIndexed": 0})
                 found[graph] = {column: sum(last.get(name, 0) for name in names) for column, names in COLUMNS.items()}
         if os.environ.get("FOVEA_COMMANDS_WRITE"):
             with TABLE.open("w", newline="") as file:

@@ -83,21 +83,15 @@ PFN_vkVoidFunction between(PFN_vkVoidFunction next) {
   return next ? reinterpret_cast<PFN_vkVoidFunction>(&Type::template call<function>) : nullptr;
 }
 
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ofDevice(VkDevice device, const char* name) {
-  if (!std::strcmp(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofDevice);
-  const PFN_vkVoidFunction next = layer::nextOfDevice(device, name);
 #define FOVEA_BETWEEN(function) \
   if (!std::strcmp(name, #function)) return between<function##_>(next);
+
+PFN_vkVoidFunction ofDevice(const char* name, PFN_vkVoidFunction next) {
   FOVEA_DEVICE_FUNCTIONS(FOVEA_BETWEEN)
   return next;
 }
 
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ofInstance(VkInstance instance, const char* name) {
-  if (!std::strcmp(name, "vkGetInstanceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofInstance);
-  if (!std::strcmp(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofDevice);
-  if (!std::strcmp(name, "vkCreateInstance")) return reinterpret_cast<PFN_vkVoidFunction>(&createInstance);
-  if (!std::strcmp(name, "vkCreateDevice")) return reinterpret_cast<PFN_vkVoidFunction>(&createDevice);
-  const PFN_vkVoidFunction next = layer::nextOfInstance ? layer::nextOfInstance(instance, name) : nullptr;
+PFN_vkVoidFunction ofInstance(const char* name, PFN_vkVoidFunction next) {
   FOVEA_INSTANCE_FUNCTIONS(FOVEA_BETWEEN)
   return next;
 }
@@ -106,5 +100,5 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ofInstance(VkInstance instance, const c
 
 extern "C" VK_LAYER_EXPORT VkResult
 vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* interface) {
-  return layer::negotiate(interface, ofInstance, ofDevice);
+  return layer::negotiate(interface, {ofInstance, ofDevice, createInstance, createDevice});
 }
