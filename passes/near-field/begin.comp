@@ -14,6 +14,7 @@ layout(std430) writeonly buffer SpreadBlock { vec4 list[]; } spread;
 layout(push_constant) uniform Constants {
   float share;
   uint vpls;
+  uint foveaSamples;
   uint saccadeSamples;
   float saccade;
   uint onlyLength;  // 1: no light is found
@@ -33,7 +34,9 @@ void main() {
   state.value.cellWidth = kNearCellWidth * known;
   state.value.ageing = changed.y;
   float lost = saccade > 0.0 ? 1.0 : changed.z;
-  state.value.foveaRays = isFirst != 0u ? 1u : uint(floor(mix(1.0, float(saccadeSamples), lost) + 0.5));
+  uint most = max(saccadeSamples, foveaSamples);
+  state.value.foveaRays =
+      isFirst != 0u ? 1u : uint(floor(mix(float(foveaSamples), float(most), lost) + 0.5));
   sums.value = NearFieldSums(0u, 0u, 0u, 0u);
   spread.list[0] = vec4(state.value.area, 0.0, 0.0, 0.0);
 }

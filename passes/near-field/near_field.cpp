@@ -46,9 +46,11 @@ void declarePorts(PassDeclaration& d) {
       "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
   d.parameter("first_samples", integer(16, 1, 1024),
               "rays per sample after a camera cut, when there is no history to build on");
+  d.parameter("fovea_samples", integer(1, 1, 16),
+              "rays per sample in the fovea, from one pixel in different directions");
   d.parameter("saccade_samples", integer(1, 1, 16),
-              "rays per sample in the fovea for 8 frames after a jump of the gaze, as the history of a new "
-              "fovea is that of wide blocks, and up to so many when light changes");
+              "rays per sample in the fovea for 8 frames after a jump of the gaze, if these are more, as the "
+              "history of a new fovea is that of wide blocks, and up to so many when light changes");
   d.parameter(
       "reach", real(4, 1, 1000),
       "how far rays reach: one goes as far as a distance with a probability of this many times the part "

@@ -35,9 +35,11 @@ layout(push_constant) uniform Constants {
 
 float discArea() { return state.value.area; }
 float reach() { return constants.reach; }
-void noteLength(float distance_, float probability) {
-  ADD_TO_SUM(sums.value.hits, sums.value.hitsHigh, 1.0 / probability);
-  ADD_TO_SUM(sums.value.diagonals, sums.value.diagonalsHigh, distance_ / (diagonal() * probability));
+float raysOfSample = 1.0;
+void noteLength(float distance_, float probability) {  // all samples count alike, however many rays they have
+  float weight = 1.0 / (probability * raysOfSample);
+  ADD_TO_SUM(sums.value.hits, sums.value.hitsHigh, weight);
+  ADD_TO_SUM(sums.value.diagonals, sums.value.diagonalsHigh, weight * distance_ / diagonal());
 }
 vec3 furtherLight(TracedSurface v, uint bounces, uint stream) {
   return gatheredLight(v, bounces, stream, state.value.cellWidth, state.value.ageing);
@@ -83,6 +85,7 @@ void main() {
   Block block = blockOf(item);
   bool wide = (item & kWideItem) != 0u;
   uint rays = block.side == 2u ? state.value.foveaRays : 1u;
+  raysOfSample = float(rays);
   // Rays leave from the surface of the first turn's pixel, too, where another pixel shows another surface.
   TracedSurface at = seenIn(constants.frameIndex, block), v = at;
   if (constants.part > 0u) v = seenIn(constants.frameIndex + constants.part, block);

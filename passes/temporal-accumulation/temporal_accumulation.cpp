@@ -56,24 +56,31 @@ class TemporalAccumulation : public Pass {
             "tiles with samples (pass mirrors), outside which the mean is 0; if not wired, all are drawn")
         .makeOptional();
     d.output("mean", ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height)), Usage::ColorAttachment,
-             "rgb: mean of the samples, in their unit; a: number of samples in it");
+             "rgb: mean of the samples, in their unit; a: number of their rays, negative where the last "
+             "sample was "
+             "for a block wider than a texel of `samples`");
     d.output("gloss_mean",
              ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(wired("gloss") * width, 1),
                              max(wired("gloss") * height, 1))),
              Usage::ColorAttachment,
              "rgb: mean of `gloss`, in its unit; a: as in `mean`; a single undefined texel if that is not "
              "wired");
-    d.parameter("frames", real(16, 1, 1000),
-                "length of the mean: each sample has at least the weight of one in this many; for blocks "
-                "wider than a texel of `samples`, which change all at once, the length is multiplied by the "
-                "ratio of the widths");
+    d.parameter(
+        "frames", real(16, 1, 1000),
+        "length of the mean, in samples: each has at least the weight of one in this many; for blocks "
+        "wider than a texel of `samples`, which change all at once, the length is multiplied by the "
+        "ratio of the widths");
     d.parameter("first_samples", integer(16, 1, 1024),
-                "weight of a sample after a camera cut, as in pass near-field");
+                "rays of a sample after a camera cut, as in pass near-field: its weight in the mean");
+    d.parameter("fovea_samples", integer(1, 1, 16),
+                "rays of a sample, as in pass near-field, except for blocks wider than a texel of `samples`, "
+                "where it is one");
     d.parameter(
         "saccade_samples", integer(1, 1, 16),
-        "weight of a sample for 8 frames after a jump of the gaze and up to that when light changes, as in "
-        "pass near-field; samples for blocks wider than a texel of `samples` keep the weight 1, and their "
-        "contribution to the mean counts less where a narrower block follows");
+        "rays of a sample for 8 frames after a jump of the gaze and up to so many when light changes, "
+        "if these are more, as in pass near-field; samples for blocks wider than a texel of `samples` "
+        "remain single rays, and their contribution to the mean counts less where a narrower block "
+        "follows");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
                 "largest distance from a pixel's tangent plane that counts as the same surface, relative to "
                 "the pixel's distance from the eye");
@@ -111,16 +118,22 @@ class TemporalAccumulation : public Pass {
         int32_t(std::bit_width((pixels + texels - 1) / texels - 1));  // a texel is 2^shift pixels wide
     Commands commands = ctx.step(ctx.has("gloss") ? "mean with gloss" : "mean");
     const bool first = ctx.firstFrame();
-    const uint32_t rays = uint32_t(p.integer("first_samples")),
-                   saccade = ctx.frame().saccade > 0 ? uint32_t(p.integer("saccade_samples")) : 1;
-    commands.constant("weight", float(first ? rays : saccade)).constant("frames", float(p.real("frames")));
+    const auto firstRays = float(p.integer("first_samples")), rays = float(p.integer("fovea_samples")),
+               changedRays = std::max(float(p.integer("saccade_samples")), rays);
+    const bool jumped = !first && ctx.frame().saccade > 0;
+    commands.constant("frames", float(p.real("frames")));
     if (shift > 0)
       commands.constant("leastCos", std::cos(glm::radians(float(p.real("normal_angle")))))
           .constant("shift", shift)
-          .constant("wideWeight", float(first ? rays : 1))
-          .constant("changedWeight", float(p.integer("saccade_samples")));
+          .constant("rays", first ? firstRays : rays)
+          .constant("changedRays", first ? firstRays : changedRays)
+          .constant("wideRays", first ? firstRays : 1)
+          .constant("jumped", float(jumped));
     else
-      commands.constant("mostOfOthers", mostOfOthers(ctx.frame()));
+      commands.constant("weight", first    ? firstRays
+                                  : jumped ? changedRays
+                                           : rays)
+          .constant("mostOfOthers", mostOfOthers(ctx.frame()));
     commands.drawFullscreen();
   }
 };

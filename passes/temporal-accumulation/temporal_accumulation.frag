@@ -30,16 +30,18 @@ Light withGloss(vec3 light, ivec2 texel) { return light; }
 #endif
 
 layout(push_constant) uniform Constants {
-  float weight;          // of a sample
   float frames;          // length of the mean
 #if BLOCKS
   float planeTolerance;  // relative to the distance from the eye
   float leastCos;
   int shift;             // a texel of `samples` is 2^shift pixels wide
-  float wideWeight;      // of a sample whose block is wider than that
-  float changedWeight;   // of a sample if all light has changed
+  float rays;            // of a sample, as long as no history is lost
+  float changedRays;     // of a sample if all history is lost
+  float wideRays;        // of a sample whose block is wider than a texel
+  float jumped;          // share of the history that is lost by a jump of the gaze
   uint frameIndex;
 #else
+  float weight;          // of a sample
   float mostOfOthers;    // frames that the history of another estimate may count
 #endif
 };
@@ -56,7 +58,8 @@ float lost() { return 0.0; }
 
 struct Mean {
   Light light;
-  float count;  // of samples that it is worth, 0 if there is none
+  float count;  // of rays that it is worth, or of samples for single pixels; 0 if there is none
+  bool wide;    // whether the last one was for a wide block
 };
 
 Mean fromHistory(ivec2 p) {
@@ -68,7 +71,8 @@ Mean fromHistory(ivec2 p) {
 #else
   Light light = old.rgb;
 #endif
-  return Mean(light, old.a / (1.0 + old.a * ageing()));
+  float count = abs(old.a);
+  return Mean(light, count / (1.0 + count * ageing()), old.a < 0.0);
 }
 
 Light mixed(Light a, Light b, float share) {
@@ -80,11 +84,12 @@ Light mixed(Light a, Light b, float share) {
 }
 
 void store(Mean result) {
+  float count = result.wide ? -result.count : result.count;
 #if GLOSS
-  glossMean = vec4(nearestHalf(result.light[1]), result.count);
-  mean = vec4(nearestHalf(result.light[0]), result.count);
+  glossMean = vec4(nearestHalf(result.light[1]), count);
+  mean = vec4(nearestHalf(result.light[0]), count);
 #else
-  mean = vec4(nearestHalf(result.light), result.count);
+  mean = vec4(nearestHalf(result.light), count);
 #endif
 }
 
@@ -96,6 +101,8 @@ struct Sample {
   bool wanted;  // whether the block's surface asks for samples at all
   bool own;     // whether it lies on the pixel's surface
 };
+
+bool isWide(int side) { return side >> shift > 1; }
 
 // The sample of a pixel. Its code, as pass near-field makes it: bits 0-3 width of its block, 4-6 and 7-9 place of its
 // pixel in the block, 10 if there is none. Divisions are avoided, as a CPU device executes them one lane at a time.
@@ -130,23 +137,23 @@ void add(inout Around around, Sample s, bool wanted) {
 
 // Mean of single rays without the brightest, if there are others: one that hits something sunlit would be a firefly.
 // Samples that are means of several rays would lose light that way, and need it less.
-Light robustMean(Around around, float weight) {
-  bool dropped = weight < 2.0 && around.count > 1.0;
+Light robustMean(Around around, float raysOfSample) {
+  bool dropped = raysOfSample < 2.0 && around.count > 1.0;
   return (around.sum - around.brightest * float(dropped)) / max(around.count - float(dropped), 1.0);
 }
 
 // Initial value where there is no mean yet: the mean of the samples on the pixel's surface in the surrounding blocks
 // of the same width; narrower ones lie where light changes quickly. If there are none, samples of other surfaces are
 // used, but with no weight.
-Mean fromAround(ivec2 p, vec4 position, vec3 normal, ivec2 size, int side, float weight) {
+Mean fromAround(ivec2 p, vec4 position, vec3 normal, ivec2 size, int side, float raysOfSample) {
   Around own = Around(Light(0.0), 0.0, Light(0.0)), all = own;
   for (int i = 0; i < 9; ++i) {
     Sample s = sampleAt(p + max(side, 1 << shift) * (ivec2(i % 3, i / 3) - 1), position, normal, size);
     add(own, s, s.own && s.side == side);
     add(all, s, s.found);
   }
-  Mean result = Mean(robustMean(own, weight), own.count * weight);
-  if (own.count == 0.0) result.light = robustMean(all, weight);
+  Mean result = Mean(robustMean(own, raysOfSample), own.count * raysOfSample, isWide(side));
+  if (own.count == 0.0) result.light = robustMean(all, raysOfSample);
   return result;
 }
 
@@ -157,18 +164,19 @@ void main() {
   bool surface = position.w > 0.0;
   Mean old = fromHistory(p);
   Sample s = sampleAt(p, position, normal, size);
-  // All pixels of a larger block change at once, so they change less each time.
-  float most = frames * float(max(s.side >> shift, 1));
-  bool wide = s.side >> shift > 1;
-  float its = wide ? wideWeight : max(weight, round(mix(1.0, changedWeight, lost())));
-  // Where the gaze has jumped. Only wide blocks leave counts above `frames`, by the ratio of the widths; each of their
-  // samples covers as many narrow blocks as the square of it.
-  if (!wide && its > 1.0 && old.count > frames) old.count = frames * frames / old.count;
+  bool wide = isWide(s.side);
+  float allLost = max(jumped, lost());
+  float its = wide ? wideRays : round(mix(rays, changedRays, allLost));
+  // All pixels of a larger block change at once, so they change less each time. What is lost is forgotten as soon as if
+  // samples were single rays, since then it is not their noise that matters.
+  float most = frames * (wide ? float(s.side >> shift) : mix(rays, 1.0, allLost));
+  // Where the gaze has jumped, each ray of the history of wide blocks stands for many narrow ones.
+  if (!wide && its > rays && old.wide && old.count > frames) old.count = frames * frames / old.count;
   float count = s.own ? min(old.count + its, most) : old.count;
-  Mean result = Mean(old.light, count);
+  Mean result = Mean(old.light, count, s.own ? wide : old.wide);
   if (s.own) result.light = mixed(old.light, s.value, min(its / count, 1.0));
   if (surface && s.wanted && !(old.count > 0.0)) result = fromAround(p, position, normal, size, s.side, its);
-  if (!surface) result = Mean(Light(0.0), 0.0);
+  if (!surface) result = Mean(Light(0.0), 0.0, false);
   store(result);
 }
 #else
@@ -179,6 +187,6 @@ void main() {
   // After a jump of the gaze, what comes from a mean that was not longer is another estimate, and a worse one.
   if (its.a > 1.0 && old.count <= frames) old.count = min(old.count, mostOfOthers);
   float count = min(old.count + weight, frames * max(its.a, 1.0));
-  store(Mean(mixed(old.light, withGloss(its.rgb, p), min(weight / count, 1.0)), count));
+  store(Mean(mixed(old.light, withGloss(its.rgb, p), min(weight / count, 1.0)), count, false));
 }
 #endif

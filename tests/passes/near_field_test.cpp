@@ -423,8 +423,9 @@ TEST(NearFieldLight, MoreRaysForChangedLight) {
   struct Counters {
     double shaded, gathered;
   };
-  const auto after = [&](float ageing) {
+  const auto after = [&](float ageing, int usual = 1) {
     NearFieldTest test(emissiveRoom(true), glm::uvec2(16));
+    test.param("fovea_samples", usual);
     test.param("saccade_samples", 5).param("vpls", 10).param("first_samples", 1024);  // which fill the cache
     test.buffer("change", std::vector<glm::vec4>{glm::vec4(0)}, "LightChange");
     test.beforeFrame([ageing](PassTest& t, scene::Frame& f) {
@@ -439,6 +440,9 @@ TEST(NearFieldLight, MoreRaysForChangedLight) {
   EXPECT_NEAR(all.shaded, 5 * same.shaded, 0.5 * same.shaded);
   EXPECT_LT(same.gathered, 0.8 * same.shaded);
   EXPECT_EQ(all.gathered, all.shaded);
+  EXPECT_NEAR(after(0, 3).shaded, 3 * same.shaded, 0.5 * same.shaded);
+  EXPECT_NEAR(after(1, 3).shaded, 4 * same.shaded, 0.5 * same.shaded);
+  EXPECT_NEAR(after(1e6f, 8).shaded, 8 * same.shaded, 0.5 * same.shaded) << "no fewer than usual";
 }
 
 TEST_P(NearField, SpacingIsAPowerOfTwo) {
