@@ -1,26 +1,25 @@
-// The boxes of one level of a bounding volume hierarchy from this frame's vertices, one node per invocation. The boxes
-// of the level below are already those of this frame.
+// The boxes of some levels of a bounding volume hierarchy from this frame's vertices, of the deepest first. The boxes of
+// the level below are already those of this frame. A dispatch for more than one level has a single group.
 #include "records/rays.h"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 256) in;
 
 layout(std430) readonly buffer Positions { vec4 positions[]; };
 layout(std430) readonly buffer Triangles { uvec4 triangles[]; };  // `rayTriangles` of rays/trace.glsl
-layout(std430) buffer Nodes { BvhNode nodes[]; };
+layout(std430) coherent buffer Nodes { BvhNode nodes[]; };
+layout(std430) readonly buffer Levels { uint levels[]; };  // first node of each, then the number of nodes
 
 layout(push_constant) uniform Constants {
-  uint first;
-  uint count;
+  uint place;  // where the second node of the tree is, less 1
+  uint highest, deepest;
 };
 
 const float kFarthest = 3.4e38;
 
-void main() {
-  uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
-  if (i >= count) return;
-  BvhNode node = nodes[first + i];
+void refit(uint node) {
+  uint place_ = node == 0u ? kBvhMoving : place + node, first = nodes[place_].first, count = nodes[place_].count;
   vec3 low = vec3(kFarthest), high = vec3(-kFarthest);
-  for (uint t = node.first; t < node.first + node.count; ++t) {
+  for (uint t = first; t < first + count; ++t) {
     uvec4 triangle = triangles[t];
     for (int k = 0; k < 3; ++k) {
       vec3 p = positions[triangle[k]].xyz;
@@ -28,10 +27,20 @@ void main() {
       high = max(high, p);
     }
   }
-  if (node.count == 0u) {
-    low = min(nodes[node.first].low, nodes[node.first + 1u].low);
-    high = max(nodes[node.first].high, nodes[node.first + 1u].high);
+  if (count == 0u) {
+    low = min(nodes[first].low, nodes[first + 1u].low);
+    high = max(nodes[first].high, nodes[first + 1u].high);
   }
-  nodes[first + i].low = low;
-  nodes[first + i].high = high;
+  nodes[place_].low = low;
+  nodes[place_].high = high;
+}
+
+void main() {
+  uint rowSize = gl_NumWorkGroups.x * gl_WorkGroupSize.x, size = gl_NumWorkGroups.y * rowSize;
+  uint index = gl_GlobalInvocationID.y * rowSize + gl_GlobalInvocationID.x;
+  for (uint level = deepest + 1u; level-- > highest;) {
+    for (uint node = levels[level] + index; node < levels[level + 1u]; node += size) refit(node);
+    memoryBarrierBuffer();
+    barrier();
+  }
 }
