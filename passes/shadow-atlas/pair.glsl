@@ -1,5 +1,6 @@
-// One pair of a VPL and a triangle, as small.comp and large.comp rasterise it. MOVER_SLACK needs
-// the push constant moverSlack.
+// One pair of a VPL and a triangle, as draw.comp, masked.comp and large.comp rasterise it. Defines: MASKED, for
+// triangles with an alpha mask; STATIC_MAPS, to draw to the maps of static geometry; MOVER_SLACK, which needs the push
+// constant moverSlack.
 #ifndef FOVEA_SHADOW_ATLAS_PAIR_GLSL
 #define FOVEA_SHADOW_ATLAS_PAIR_GLSL
 
@@ -15,10 +16,8 @@ const bool kMasked = true;
 const bool kMasked = false;
 #endif
 
-layout(std140) uniform BatchBlock { VplView views[kBatch]; } batch;
-layout(std430) readonly buffer StepsBlock { Step list[]; } steps;
-layout(std430) readonly buffer PairsBlock { uint list[]; } pairs;
-layout(std430) buffer CountersBlock { uint maps, small, large, masked; } counters;
+// Those of the round.
+layout(std140) uniform ViewsBlock { VplView list[kRound]; } views;
 #ifdef STATIC_MAPS
 layout(r32ui) uniform uimage2DArray staticMaps;
 #define atlas staticMaps
@@ -46,14 +45,12 @@ float wayOf(uint vertex, vec3 position) { return distance(position, scenePreviou
 
 // clipped: the triangle may have any size. The slack is the distance that its fastest corner has moved since the
 // previous frame, times moverSlack.
-Pair loadPair(uint word, int size, float planeEpsilon, bool clipped
+Pair pairOf(VplView view, Triangle triangle, uint index, int size, float planeEpsilon, bool clipped
 #ifdef MOVER_SLACK
-              , float moverSlack
+            , float moverSlack
 #endif
 ) {
   Pair pair;
-  VplView view = batch.views[word >> kTriangleBits];
-  Triangle triangle = loadTriangle(word & kTriangleMask);
   vec3 a = seenFrom(view, triangle.a), b = seenFrom(view, triangle.b), c = seenFrom(view, triangle.c);
   bool tight;
   pair.box = projectedBox(a, b, c, float(size), tight);
@@ -64,7 +61,7 @@ Pair loadPair(uint word, int size, float planeEpsilon, bool clipped
   pair.test = rayTest(view, triangle, planeEpsilon);
   pair.origin = atlasTexel(view.slot, ivec2(0), atlasLayout(imageSize(atlas)));
   pair.material = triangle.material;
-  pair.triangle = word & kTriangleMask;
+  pair.triangle = index;
 #ifdef MOVER_SLACK
   pair.slack = moverSlack * max(max(wayOf(triangle.vertices.x, triangle.a), wayOf(triangle.vertices.y, triangle.b)),
                                 wayOf(triangle.vertices.z, triangle.c));
@@ -96,6 +93,18 @@ void rasterise(Pair pair, vec2 texel, bool inside, float toMap) {
   distance_ += min(pair.slack, kMostSlack * distance_);
 #endif
   if (hit) imageAtomicMin(atlas, pair.origin + ivec3(texel, 0), floatBitsToUint(distance_));
+}
+
+// Rasterises all texels of a pair that covers few, one after the other.
+void drawBox(Pair pair, int size) {
+  float toMap = 2.0 / float(size);
+  vec2 texel = pair.box.lo;
+  while (texel.y <= pair.box.hi.y) {
+    rasterise(pair, texel, true, toMap);
+    texel.x += 1.0;
+    bool next = texel.x > pair.box.hi.x;
+    texel = next ? vec2(pair.box.lo.x, texel.y + 1.0) : texel;
+  }
 }
 
 #endif

@@ -5,10 +5,12 @@
 
 SHARED_BEGIN(fovea::passes::atlas)
 
-SHARED_CONSTANT uint kBatch =
-    16u;  // VPLs that share one reading of a triangle; their records are in a uniform buffer
-SHARED_CONSTANT uint kMovers = 4u;       // spheres around objects that may have changed a map (changed.comp)
-SHARED_CONSTANT uint kCullGroup = 128u;  // triangles per work group of cull.comp
+SHARED_CONSTANT uint kBatch = 32u;  // VPLs that share one reading of triangles
+SHARED_CONSTANT uint kRound =
+    kBatch * 16u;                       // VPLs that share dispatches; their records are in a uniform buffer
+SHARED_CONSTANT uint kMovers = 4u;      // spheres around objects that may have changed a map (changed.comp)
+SHARED_CONSTANT uint kDrawGroup = 64u;  // invocations per work group of draw.comp
+SHARED_CONSTANT uint kTriangles = 4u;   // per invocation of draw.comp
 // Dispatches are folded into rows, since one dimension is limited to 65,535 groups.
 SHARED_CONSTANT uint kGroupsPerRow = 4096u;
 
@@ -27,7 +29,7 @@ SHARED_OFFSET(DrawnMap, movers, 32)
 struct VplView {
   vec3 position SHARED_ZERO;  // world space, m
   uint slot SHARED_ZERO;      // of the atlas
-  vec3 tangent SHARED_ZERO;   // the VPL's frame; all 0 in an unused record, which then sees nothing
+  vec3 tangent SHARED_ZERO;   // the VPL's frame
   float unused0 SHARED_ZERO;
   vec3 bitangent SHARED_ZERO;
   float unused1 SHARED_ZERO;
@@ -37,7 +39,7 @@ struct VplView {
 SHARED_SIZE(VplView, 64)
 SHARED_OFFSET(VplView, normal, 48)
 
-// Arguments of an indirect dispatch, and the number of pairs it works on.
+// Arguments of an indirect dispatch, and the number of items it works on.
 struct WorkList {
   uint x SHARED_ZERO;
   uint y SHARED_ZERO;
@@ -46,14 +48,20 @@ struct WorkList {
 };
 SHARED_SIZE(WorkList, 16)
 
-// Work on one batch over a range of triangles. Each pair is in one of the four lists.
+// Work on the VPLs of a round over a range of triangles.
 struct Step {
-  WorkList cull;
-  WorkList small;        // boxes of up to kSmallTexels, one invocation per pair
-  WorkList large;        // eight invocations per pair
-  WorkList maskedSmall;  // the same for materials with an alpha mask
+  WorkList draw;         // of draw.comp; counts VPLs, the others VplSets
+  WorkList large;        // boxes of more than kSmallTexels: eight invocations per set
+  WorkList maskedSmall;  // materials with an alpha mask, other boxes: one invocation per set
   WorkList maskedLarge;
 };
-SHARED_SIZE(Step, 80)
+SHARED_SIZE(Step, 64)
+
+// A triangle and those VPLs of a batch in whose maps it is to be drawn.
+struct VplSet {
+  uint triangle SHARED_ZERO;  // batch of the round << kTriangleBits | triangle
+  uint vpls SHARED_ZERO;      // a bit for each VPL of the batch
+};
+SHARED_SIZE(VplSet, 8)
 
 SHARED_END

@@ -1,5 +1,5 @@
-// One work group: packs the VPLs whose maps are to be drawn into batches, in the order of their slots, and prepares
-// the indirect dispatches of the steps. VPLs that need only the moving triangles follow in batches of their own.
+// One work group: packs the VPLs whose maps are to be drawn, in the order of their slots, and prepares the indirect
+// dispatches of the steps. VPLs that need only the moving triangles come last.
 #include "vpls/paraboloid.glsl"
 #include "vpls/vpl.glsl"
 #include "shadow-atlas/step.glsl"
@@ -7,27 +7,26 @@
 layout(local_size_x = 256) in;
 
 layout(std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
-layout(std430) writeonly buffer BatchBlock { VplView views[]; } batch;
+layout(std430) writeonly buffer ViewsBlock { VplView list[]; } views;
 layout(std430) writeonly buffer StepsBlock { Step list[]; } steps;
 layout(std430) readonly buffer ChosenBlock { uint list[]; } chosen;
 
 layout(push_constant) uniform Constants {
   uint slots;
-  uint batches;
-  uint ranges;         // steps per batch, one for each range of triangles
+  uint rounds;
+  uint ranges;         // steps per round, one for each range of triangles
   uint allRanges;      // the first of them, for maps that are drawn from scratch
   uint allGroups;      // groups of the largest of those
   uint overlayGroups;  // groups of the largest of the others, which every map gets
+  uint slices;         // of the work on large pairs
 };
 
 #include "shadow-atlas/compact.glsl"
 
-// Packs the slots with or without `overlaid` from place `count` on and leaves the rest of the last batch
-// empty. Returns the end.
+// Packs the slots with or without `overlaid` from place `count` on. Returns the end.
 uint pack(bool overlaid, uint count) {
-  uint i = gl_LocalInvocationIndex;
   for (uint base = 0u; base < slots; base += 256u) {
-    uint slot = base + i;
+    uint slot = base + gl_LocalInvocationIndex;
     uint choice = slot < slots ? chosen.list[slot] : kSlotIdle;
     bool draw = isDrawn(choice) && (choice == kSlotOverlaid) == overlaid;
     uint total;
@@ -35,22 +34,21 @@ uint pack(bool overlaid, uint count) {
     if (draw) {
       Vpl v = vpls.list[slot];
       mat3 frame = orthonormalFrame(v.normal);
-      batch.views[place] = VplView(v.position, slot, frame[0], 0.0, frame[1], 0.0, frame[2], 0.0);
+      views.list[place] = VplView(v.position, slot, frame[0], 0.0, frame[1], 0.0, frame[2], 0.0);
     }
     count += total;
   }
-  uint end = (count + kBatch - 1u) / kBatch * kBatch;
-  for (uint place = count + i; place < end; place += 256u)
-    batch.views[place] = VplView(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
-  return end;
+  return count;
 }
 
 void main() {
-  uint whole = pack(false, 0u) / kBatch, all = pack(true, whole * kBatch) / kBatch;
-  WorkList none = WorkList(0u, 1u, 1u, 0u);
-  for (uint s = gl_LocalInvocationIndex; s < batches * ranges; s += 256u) {
+  uint whole = pack(false, 0u), all = pack(true, whole);
+  for (uint s = gl_LocalInvocationIndex; s < rounds * ranges; s += 256u) {
     bool overlay = s % ranges >= allRanges;
-    uint groups = s / ranges < (overlay ? all : whole) ? (overlay ? overlayGroups : allGroups) : 0u;
-    steps.list[s] = Step(WorkList(groups, 1u, 1u, 0u), none, none, none, none);
+    WorkList large = WorkList(0u, 1u, slices, 0u);
+    uint end = overlay ? all : whole, first = s / ranges * kRound;
+    uint count = min(end - min(first, end), kRound), batches = (count + kBatch - 1u) / kBatch;
+    steps.list[s] = Step(WorkList(overlay ? overlayGroups : allGroups, batches, 1u, count),
+                         large, WorkList(0u, 1u, 1u, 0u), large);
   }
 }

@@ -1,9 +1,9 @@
 // Paraboloid shadow maps of all VPLs: an r32ui image array with one map per slot, in which every texel holds the
-// distance from the VPL to the nearest surface along the texel's direction. A compute rasteriser runs in two passes
-// over batches of VPLs. cull.comp lists the (VPL, triangle) pairs that may cover a texel's centre; small.comp and
-// large.comp test the texels against the planes through the VPL and the triangle's edges. The test is exact, unlike
-// rasterising straight edges between projected vertices, as edges are arcs. An integer atomic keeps the smallest
-// distance, so the result does not depend on the order.
+// distance from the VPL to the nearest surface along the texel's direction. A compute rasteriser tests the texels
+// against the planes through the VPL and the triangle's edges. The test is exact, unlike rasterising straight edges
+// between projected vertices, as edges are arcs. draw.comp finds the (VPL, triangle) pairs that may cover a texel's
+// centre and draws those of few texels; large.comp draws the others. An integer atomic keeps the smallest distance, so
+// the result does not depend on the order.
 //
 // Where a VPL is static and something moves in front of it, the map of static geometry can be kept (parameter
 // `static_maps`): it is copied, and only moving geometry is drawn over it.
@@ -12,6 +12,7 @@
 // by its front end (one image layer per VPL, with the whole mesh each) and would distort the edges of exactly those
 // triangles that simplification makes large.
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -34,9 +35,10 @@ using namespace graph;
 
 using namespace atlas;
 
-constexpr uint32_t kRangeTriangles = 1 << 19;  // per step: bounds the lists of pairs to 64 MiB
-// 4,096 blocks of about 10 turns each, which stays below the limit of 65,535 turns of a loop.
-constexpr uint32_t kSliceTexels = 1 << 18;
+constexpr uint32_t kRangeTriangles = 1 << 19;  // per step: bounds the lists to 128 MiB
+// Eight invocations of large.comp draw up to kBatch pairs, so these are 4,096 blocks of about 10 turns each, which
+// stays below the limit of 65,535 turns of a loop.
+constexpr uint32_t kSliceTexels = (1 << 18) / kBatch;
 
 class ShadowAtlas : public Pass {
  public:
@@ -47,7 +49,7 @@ class ShadowAtlas : public Pass {
  private:
   struct Kernels {
     // The masked kernels exist only with the parameter `alpha_mask`.
-    Kernel cull, small, large, maskedSmall, maskedLarge;
+    Kernel draw, large, maskedSmall, maskedLarge;
   };
   struct Range {  // triangles of one step
     const Kernels* kernels;
@@ -62,7 +64,7 @@ class ShadowAtlas : public Pass {
   Ranges ranges(RecordContext& ctx);
   void simplifyScene(RecordContext& ctx);
   void chooseSlots(RecordContext& ctx);
-  void recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range);
+  void recordStep(RecordContext& ctx, uint32_t round, uint32_t step, const Range& range);
 
   Kernel changed_, choose_, clear_, setup_, compose_;
   bool hasState_ = false, staticMaps_ = false, simplify_ = false, uploaded_ = false;
@@ -93,7 +95,7 @@ PassDeclaration ShadowAtlas::declaration() {
            "bits of a float: distance in m to the nearest surface in the direction of the texel's centre, "
            "infinity if there is none (shaders/vpls/paraboloid.glsl)")
       .keep(Lifetime::View);
-  const SizeExpr batches = ceilDiv(countOf("vpls"), kBatch), triangles = environment("scene.triangles");
+  const SizeExpr rounds = ceilDiv(countOf("vpls"), kRound), triangles = environment("scene.triangles");
   d.scratch("refreshed", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,
             "frame in which each map was drawn")
       .keep(Lifetime::View);
@@ -112,15 +114,15 @@ PassDeclaration ShadowAtlas::declaration() {
                          max(1, parameter("size") * keeps), max(1, ceilDiv(countOf("vpls"), tiles) * keeps)),
             Usage::StorageRead | Usage::StorageWrite, "the same as the atlas, with static geometry only")
       .keep(Lifetime::View);
-  d.scratch("batch", buffer("VplView", sizeof(VplView), (batches + 1) * kBatch),
+  d.scratch("views", buffer("VplView", sizeof(VplView), rounds * kRound),
             Usage::StorageWrite | Usage::Uniform, "VPLs whose maps are drawn, packed");
-  d.scratch("steps",
-            buffer("AtlasStep", sizeof(Step), (batches + 1) * (ceilDiv(triangles, kRangeTriangles) + 2)),
+  d.scratch("steps", buffer("AtlasStep", sizeof(Step), rounds * (ceilDiv(triangles, kRangeTriangles) + 2)),
             Usage::StorageRead | Usage::StorageWrite | Usage::Indirect,
-            "indirect dispatches and lengths of the lists");
-  d.scratch("pairs", buffer("uint", 4, min(triangles, kRangeTriangles) * (2 * kBatch)),
+            "indirect dispatches, and how much each works on");
+  d.scratch("listed",
+            buffer("VplSet", sizeof(VplSet), min(triangles, kRangeTriangles) * (2 * kRound / kBatch)),
             Usage::StorageRead | Usage::StorageWrite,
-            "pairs to rasterise, with room for every pair of a step");
+            "triangles to draw in the second step, with room for every triangle in every map");
   d.scratch("simplified", buffer("SimplifiedTriangle", 48, max(1, triangles * parameter("technique"))),
             Usage::TexelRead | Usage::TransferWrite, "simplified mesh")
       .keep(Lifetime::Scene);
@@ -173,12 +175,11 @@ ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplifi
   if (!simplified && !toStaticMaps && ctx.parameters().real("mover_slack") > 0) defines["MOVER_SLACK"] = "1";
   const auto kernel = [&](const char* shader) { return ctx.compute(shader, defines).called("draw"); };
   Kernels k;
-  k.cull = kernel("shadow-atlas/cull.comp");
-  k.small = kernel("shadow-atlas/small.comp");
+  k.draw = kernel("shadow-atlas/draw.comp");
   k.large = kernel("shadow-atlas/large.comp");
   if (!ctx.parameters().flag("alpha_mask")) return k;
   defines["MASKED"] = "1";
-  k.maskedSmall = kernel("shadow-atlas/small.comp");
+  k.maskedSmall = kernel("shadow-atlas/masked.comp");
   k.maskedLarge = kernel("shadow-atlas/large.comp");
   return k;
 }
@@ -241,38 +242,29 @@ ShadowAtlas::Ranges ShadowAtlas::ranges(RecordContext& ctx) {
   return list;
 }
 
-void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range) {
-  const uint64_t viewOffset = uint64_t(batch) * kBatch * sizeof(VplView);
-  const uint32_t capacity = uint32_t(ctx.count("pairs") / 2),
-                 size = uint32_t(ctx.parameters().integer("size"));
+void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t round, uint32_t step, const Range& range) {
   auto use = [&](Kernel kernel) {
     Commands commands = ctx.use(kernel);
-    commands.range("batch", viewOffset, kBatch * sizeof(VplView))
+    commands.range("views", uint64_t(round) * kRound * sizeof(VplView), kRound * sizeof(VplView))
         .constant("step_", step)
-        .constant("capacity", capacity);
+        .constant("capacity", uint32_t(ctx.count("listed") / 2))
+        .constant("planeEpsilon", range.planeEpsilon);
     return commands;
   };
-  auto dispatch = [&](Commands& commands, uint32_t list) {
-    commands.dispatchIndirect("steps", uint64_t(step) * sizeof(Step) + list * sizeof(WorkList));
+  auto dispatch = [&](Commands& commands, size_t list) {
+    commands.dispatchIndirect("steps", uint64_t(step) * sizeof(Step) + list);
   };
-  Commands cull = use(range.kernels->cull);
-  cull.constant("firstTriangle", range.first).constant("triangleCount", range.count);
-  dispatch(cull, 0);
-
-  const Kernel lists[] = {range.kernels->small, range.kernels->large, range.kernels->maskedSmall,
-                          range.kernels->maskedLarge};
+  const Kernels& kernels = *range.kernels;
+  Commands draw = use(kernels.draw);
+  draw.constant("firstTriangle", range.first).constant("triangleCount", range.count);
+  dispatch(draw, offsetof(Step, draw));
+  Commands large = use(kernels.large);
+  dispatch(large, offsetof(Step, large));
+  if (!kernels.maskedSmall) return;
   // Each keeps the smallest distances by integer atomics, so they may run in any order.
-  for (uint32_t list = 0; list < 4 && lists[list]; ++list) {
-    const bool large = list % 2 == 1;
-    const uint32_t slices = large ? (size * size + kSliceTexels - 1) / kSliceTexels : 1;
-    for (uint32_t slice = 0; slice < slices; ++slice) {
-      Commands raster = use(lists[list]);
-      raster.constant("planeEpsilon", range.planeEpsilon);
-      if (large) raster.constant("slice", slice).constant("slices", slices);
-      if (list > 0 || slice > 0) raster.together();
-      dispatch(raster, 1 + list);
-    }
-  }
+  Commands maskedSmall = use(kernels.maskedSmall), maskedLarge = use(kernels.maskedLarge);
+  dispatch(maskedSmall.together(), offsetof(Step, maskedSmall));
+  dispatch(maskedLarge.together(), offsetof(Step, maskedLarge));
 }
 
 // A sphere around everything that moves; its radius is negative if nothing does.
@@ -314,30 +306,32 @@ void ShadowAtlas::record(RecordContext& ctx) {
   chooseSlots(ctx);
 
   const Ranges triangles = ranges(ctx);
+  constexpr uint32_t kDrawn = kDrawGroup * kTriangles;
   auto groups = [](const std::vector<Range>& list) {
     uint32_t largest = 0;
     for (const Range& r : list) largest = std::max(largest, r.count);
-    return (largest + kCullGroup - 1) / kCullGroup;
+    return (largest + kDrawn - 1) / kDrawn;
   };
   const uint32_t slots = uint32_t(ctx.count("vpls")), all = uint32_t(triangles.all.size()),
-                 steps = all + uint32_t(triangles.overlay.size()),
-                 batches = (slots + kBatch - 1) / kBatch + (staticMaps_ ? 1 : 0);
+                 steps = all + uint32_t(triangles.overlay.size()), rounds = (slots + kRound - 1) / kRound,
+                 size = uint32_t(ctx.parameters().integer("size"));
   ctx.use(setup_)
       .constant("slots", slots)
-      .constant("batches", batches)
+      .constant("rounds", rounds)
       .constant("ranges", steps)
       .constant("allRanges", all)
       .constant("allGroups", groups(triangles.all))
       .constant("overlayGroups", groups(triangles.overlay))
+      .constant("slices", (size * size + kSliceTexels - 1) / kSliceTexels)
       .dispatch(1);
-  for (uint32_t batch = 0; batch < batches; ++batch)
-    for (uint32_t i = 0; i < all; ++i) recordStep(ctx, batch, batch * steps + i, triangles.all[i]);
+  for (uint32_t round = 0; round < rounds; ++round)
+    for (uint32_t i = 0; i < all; ++i) recordStep(ctx, round, round * steps + i, triangles.all[i]);
   if (!staticMaps_) return;
   const uint32_t columns = std::min(slots, kGroupsPerRow), rows = (slots + kGroupsPerRow - 1) / kGroupsPerRow;
   ctx.use(compose_).constant("slots", slots).dispatch(columns, rows);
-  for (uint32_t batch = 0; batch < batches; ++batch)
+  for (uint32_t round = 0; round < rounds; ++round)
     for (uint32_t i = all; i < steps; ++i)
-      recordStep(ctx, batch, batch * steps + i, triangles.overlay[i - all]);
+      recordStep(ctx, round, round * steps + i, triangles.overlay[i - all]);
 }
 
 FOVEA_PASS(ShadowAtlas);

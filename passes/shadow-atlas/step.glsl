@@ -1,10 +1,10 @@
-// Records exchanged by the kernels of the shadow atlas: a batch of VPLs and the work of one step.
+// What the kernels of the shadow atlas tell each other.
 #ifndef FOVEA_SHADOW_ATLAS_STEP_GLSL
 #define FOVEA_SHADOW_ATLAS_STEP_GLSL
 
 #include "shadow-atlas/records.h"
 
-const uint kTriangleBits = 27u;  // a pair is one word: VPL of the batch << kTriangleBits | triangle
+const uint kTriangleBits = 27u;  // of VplSet.triangle
 const uint kTriangleMask = (1u << kTriangleBits) - 1u;
 
 // What is done with a slot in this frame.
@@ -22,14 +22,9 @@ const uint kChangeNone = 0u;
 const uint kChangeMovers = 1u;
 const uint kChangeAll = 2u;  // the VPL has moved, or has no map
 
-const uint kListWords = 4u, kStepWords = 20u;  // sizes of WorkList and Step
-const uint kSmallTexels = 64u;
+const uint kListWords = 4u, kStepLists = 4u;  // sizes of WorkList and Step
+const uint kSmallTexels = 64u;                // the most that a small pair's box has
 const uint kSmallPerGroup = 64u;
 const uint kLargePerGroup = 8u;
-
-// Position of entry i of a list in the buffer of pairs. It has two arrays, opaque and masked, each as long as all
-// pairs of a step; small pairs are stored from the front, large ones from the back.
-uint smallPlace(uint i, uint capacity, bool masked) { return masked ? capacity + i : i; }
-uint largePlace(uint i, uint capacity, bool masked) { return (masked ? 2u * capacity : capacity) - 1u - i; }
 
 #endif

@@ -213,6 +213,16 @@ TEST(ShadowAtlas, LargestMapIsComplete) {
   runAndExpectExact(s, {vpl({0, 0, 0}, {0, 0, 1})}, {.size = 1024, .stride = 7});
 }
 
+// As many texels and pairs as there can be: the triangle covers all maps of more VPLs than share a dispatch.
+TEST(ShadowAtlas, ATriangleMayCoverAllMaps) {
+  Scene s;
+  s.materials.emplace_back();
+  addTriangle(s, {-900, -900, 1}, {900, -900, 1}, {0, 1800, 1});
+  std::vector<Vpl> vpls;
+  for (int i = 0; i < 600; ++i) vpls.push_back(vpl({0.01f * float(i), 0, 0}, {0, 0, 1}));
+  runAndExpectExact(s, vpls, {.size = 128, .stride = 7});
+}
+
 TEST(ShadowAtlas, OwnSurfaceDoesNotBlock) {
   Scene s = emptyScene();
   addQuad(s, 0, {-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5});

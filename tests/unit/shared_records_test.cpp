@@ -227,6 +227,7 @@ TEST(SharedRecords, OfOnePass) {
                {AT(PathSum, paths), AT(PathSum, lightX), AT(PathSum, lightY), AT(PathSum, lightZ)});
   using passes::atlas::DrawnMap;
   using passes::atlas::Step;
+  using passes::atlas::VplSet;
   using passes::atlas::VplView;
   const char* atlas = "shadow-atlas/records.h";
   expectLayout(atlas, "DrawnMap", sizeof(DrawnMap),
@@ -235,9 +236,9 @@ TEST(SharedRecords, OfOnePass) {
   expectLayout(atlas, "VplView", sizeof(VplView),
                {AT(VplView, position), AT(VplView, slot), AT(VplView, tangent), AT(VplView, unused0),
                 AT(VplView, bitangent), AT(VplView, unused1), AT(VplView, normal), AT(VplView, unused2)});
-  expectLayout(
-      atlas, "Step", sizeof(Step),
-      {AT(Step, cull), AT(Step, small), AT(Step, large), AT(Step, maskedSmall), AT(Step, maskedLarge)});
+  expectLayout(atlas, "Step", sizeof(Step),
+               {AT(Step, draw), AT(Step, large), AT(Step, maskedSmall), AT(Step, maskedLarge)});
+  expectLayout(atlas, "VplSet", sizeof(VplSet), {AT(VplSet, triangle), AT(VplSet, vpls)});
 }
 
 }  // namespace
