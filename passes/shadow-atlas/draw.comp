@@ -25,8 +25,9 @@ layout(push_constant) uniform Constants {
 #endif
 };
 
-// Lists a triangle and the VPLs in whose maps it is to be drawn. Opaque sets are stored from the front of the list, and
-// large masked ones from its back; they never meet, as a triangle is one or the other. Small masked sets follow.
+// Lists a triangle and the VPLs in whose maps it is to be drawn. Opaque sets are stored from the front of the first half
+// of the list, and large masked ones from its back. They never meet, as a triangle is either opaque or masked. Small
+// masked sets fill the second half.
 void append(uint index, uint vpls, bool large, bool masked) {
   uint list = kListWords * (kStepLists * step_ + (masked ? large ? 3u : 2u : 1u));  // a WorkList of the step
   uint entry = atomicAdd(steps.words[list + 3u], 1u);

@@ -1,6 +1,6 @@
 // One pair of a VPL and a triangle, as draw.comp, masked.comp and large.comp rasterise it. Defines: MASKED, for
-// triangles with an alpha mask; STATIC_MAPS, to draw to the maps of static geometry; MOVER_SLACK, which needs the push
-// constant moverSlack.
+// triangles with an alpha mask; STATIC_MAPS, to draw to the maps of static geometry; MOVER_SLACK, to draw what moves as
+// if it were farther away.
 #ifndef FOVEA_SHADOW_ATLAS_PAIR_GLSL
 #define FOVEA_SHADOW_ATLAS_PAIR_GLSL
 

@@ -57,7 +57,7 @@ struct Step {
 };
 SHARED_SIZE(Step, 64)
 
-// A triangle and those VPLs of a batch in whose maps it is to be drawn.
+// A triangle, and the VPLs of one batch whose maps it has to be drawn to.
 struct VplSet {
   uint triangle SHARED_ZERO;  // batch of the round << kTriangleBits | triangle
   uint vpls SHARED_ZERO;      // a bit for each VPL of the batch

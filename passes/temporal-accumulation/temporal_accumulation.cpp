@@ -72,9 +72,10 @@ class TemporalAccumulation : public Pass {
         "ratio of the widths");
     d.parameter("first_samples", integer(16, 1, 1024),
                 "rays of a sample after a camera cut, as in pass near-field: its weight in the mean");
-    d.parameter("fovea_samples", integer(1, 1, 16),
-                "rays of a sample, as in pass near-field, except for blocks wider than a texel of `samples`, "
-                "where it is one");
+    d.parameter(
+        "fovea_samples", integer(1, 1, 16),
+        "rays of the sample of a block, as in pass near-field; the samples of blocks wider than a texel of "
+        "`samples` are single rays");
     d.parameter(
         "saccade_samples", integer(1, 1, 16),
         "rays of a sample for 8 frames after a jump of the gaze and up to so many when light changes, "
@@ -121,18 +122,17 @@ class TemporalAccumulation : public Pass {
     const auto firstRays = float(p.integer("first_samples")), rays = float(p.integer("fovea_samples")),
                changedRays = std::max(float(p.integer("saccade_samples")), rays);
     const bool jumped = !first && ctx.frame().saccade > 0;
+    const float most = first ? firstRays : changedRays;
     commands.constant("frames", float(p.real("frames")));
     if (shift > 0)
       commands.constant("leastCos", std::cos(glm::radians(float(p.real("normal_angle")))))
           .constant("shift", shift)
           .constant("rays", first ? firstRays : rays)
-          .constant("changedRays", first ? firstRays : changedRays)
+          .constant("changedRays", most)
           .constant("wideRays", first ? firstRays : 1)
           .constant("jumped", float(jumped));
     else
-      commands.constant("weight", first    ? firstRays
-                                  : jumped ? changedRays
-                                           : rays)
+      commands.constant("weight", first || jumped ? most : 1)
           .constant("mostOfOthers", mostOfOthers(ctx.frame()));
     commands.drawFullscreen();
   }

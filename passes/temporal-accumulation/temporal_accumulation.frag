@@ -167,8 +167,8 @@ void main() {
   bool wide = isWide(s.side);
   float allLost = max(jumped, lost());
   float its = wide ? wideRays : round(mix(rays, changedRays, allLost));
-  // All pixels of a larger block change at once, so they change less each time. What is lost is forgotten as soon as if
-  // samples were single rays, since then it is not their noise that matters.
+  // All pixels of a larger block change at once, so they change less each time. Where history is
+  // lost, the mean is as short as that of single rays: outdated light is then a larger error than their noise.
   float most = frames * (wide ? float(s.side >> shift) : mix(rays, 1.0, allLost));
   // Where the gaze has jumped, each ray of the history of wide blocks stands for many narrow ones.
   if (!wide && its > rays && old.wide && old.count > frames) old.count = frames * frames / old.count;

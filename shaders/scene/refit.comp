@@ -1,5 +1,5 @@
-// The boxes of some levels of a bounding volume hierarchy from this frame's vertices, of the deepest first. The boxes of
-// the level below are already those of this frame. A dispatch for more than one level has a single group.
+// Computes the boxes of some levels of a bounding volume hierarchy from this frame's vertices, beginning with the deepest
+// of these levels. The boxes below it are already those of this frame. A dispatch for several levels has a single group.
 #include "records/rays.h"
 
 layout(local_size_x = 256) in;
@@ -17,7 +17,7 @@ layout(push_constant) uniform Constants {
 const float kFarthest = 3.4e38;
 
 void refit(uint node) {
-  uint place_ = node == 0u ? kBvhMoving : place + node, first = nodes[place_].first, count = nodes[place_].count;
+  uint at = node == 0u ? kBvhMoving : place + node, first = nodes[at].first, count = nodes[at].count;
   vec3 low = vec3(kFarthest), high = vec3(-kFarthest);
   for (uint t = first; t < first + count; ++t) {
     uvec4 triangle = triangles[t];
@@ -31,8 +31,8 @@ void refit(uint node) {
     low = min(nodes[first].low, nodes[first + 1u].low);
     high = max(nodes[first].high, nodes[first + 1u].high);
   }
-  nodes[place_].low = low;
-  nodes[place_].high = high;
+  nodes[at].low = low;
+  nodes[at].high = high;
 }
 
 void main() {

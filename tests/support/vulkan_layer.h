@@ -45,8 +45,8 @@ inline VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical, co
   return create(physical, info, callbacks, device);
 }
 
-// The function that a layer has in place of `next`, the next layer's function of this name: `next` itself where it has
-// none, and null if `next` is null.
+// Returns the function that a layer puts before `next`, which is the next layer's function of this name. That is `next`
+// itself if the layer has none for this name, and null if `next` is null.
 using Between = PFN_vkVoidFunction (*)(const char* name, PFN_vkVoidFunction next);
 
 struct Layer {
