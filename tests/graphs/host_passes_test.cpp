@@ -20,7 +20,7 @@ TEST(HostPasses, OnlyThePathTracerIsOne) {
   std::set<std::string> onHost;
   int graphs = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    const std::filesystem::path file = entry.path();
+    const std::filesystem::path& file = entry.path();
     if (file.extension() != ".json" || file.stem() == "fovea-graph.schema" ||
         file.parent_path().filename() == "parts")
       continue;

@@ -15,12 +15,6 @@
 #include "framework/scene/tables/emitter_table.h"
 
 namespace fovea::scene {
-namespace {
-
-constexpr uint32_t kMostGroups = 32768;  // per row of a dispatch
-
-}  // namespace
-
 struct EmitterTables::Impl {
   gpu::Device& device;
   gpu::Buffer texels;
