@@ -13,7 +13,7 @@ constexpr Usage kReadWrite = Usage::StorageRead | Usage::StorageWrite;
 
 // The first round has as many paths as there are slots, the later ones as many as probably fill the list; what they
 // leave free is left to the last one.
-constexpr int kRounds = 4;
+constexpr int kRounds = 3;
 
 void declarePorts(PassDeclaration& d) {
   const SizeExpr count = parameter("count");

@@ -1,7 +1,9 @@
-// One work group: which slots get a new map in this frame. New VPLs always do; of those kept from the previous frame,
-// as many as the budget allows (passes/README.md, shadow-atlas). Defines: HAS_STATE 0/1: without the state of the
+// One work group: which slots get a new map in this frame, and the indirect dispatches that draw these maps. New VPLs
+// always get one; of those kept from the previous frame, as many as the budget allows (passes/README.md, shadow-atlas).
+// Defines: HAS_STATE 0/1: without the state of the
 // VPLs every lit slot is drawn; REFRESH: 1 top, 2 split, 3 stale; STATIC_MAPS 0/1; CHANGE 0/1: whether changes of the
 // light are known.
+#include "vpls/paraboloid.glsl"
 #include "vpls/vpl.glsl"
 #include "shadow-atlas/step.glsl"
 
@@ -10,6 +12,8 @@ layout(local_size_x = 256) in;
 layout(std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
 layout(std430) buffer RefreshedBlock { uint frames[]; } refreshed;  // number of the frame + 1, 0 if there is no map
 layout(std430) buffer ChosenBlock { uint list[]; } chosen;
+layout(std430) writeonly buffer ViewsBlock { VplView list[]; } views;
+layout(std430) writeonly buffer StepsBlock { Step list[]; } steps;
 layout(std430) buffer CountersBlock {
   uint maps, small, large, masked, fresh, refreshes, texels, unchanged, overlaid;
 } counters;
@@ -25,6 +29,12 @@ layout(push_constant) uniform Constants {
   uint slots;
   uint frameNumber;
   uint size;
+  uint rounds;
+  uint ranges;         // steps per round, one for each range of triangles
+  uint allRanges;      // the first of them, for maps that are drawn from scratch
+  uint allGroups;      // groups of the largest of those
+  uint overlayGroups;  // groups of the largest of the others, which every map gets
+  uint slices;         // of the work on large pairs
 #if HAS_STATE
   float refreshShare;
   vec4 movers;  // xyz: centre, w: radius of a sphere around all moving objects, negative if there are none
@@ -99,7 +109,7 @@ void take(uint budget, uint order) {
 }
 #endif
 
-void main() {
+void chooseSlots() {
   uint i = gl_LocalInvocationIndex, kept = 0u, drawn = 0u, fresh = 0u;
   for (uint base = 0u; base < slots; base += 256u) {
     uint slot = base + i, total;
@@ -158,4 +168,43 @@ void main() {
     counters.unchanged = unchanged;
     counters.overlaid = overlaid;
   }
+}
+
+// Packs the slots with or without `overlaid` from place `count` on. Returns the end.
+uint pack(bool overlaid, uint count) {
+  for (uint base = 0u; base < slots; base += 256u) {
+    uint slot = base + gl_LocalInvocationIndex;
+    uint choice = slot < slots ? chosen.list[slot] : kSlotIdle;
+    bool draw = isDrawn(choice) && (choice == kSlotOverlaid) == overlaid;
+    uint total;
+    uint place = count + compact(draw, total);
+    if (draw) {
+      Vpl v = vpls.list[slot];
+      mat3 frame = orthonormalFrame(v.normal);
+      views.list[place] = VplView(v.position, slot, frame[0], 0.0, frame[1], 0.0, frame[2], 0.0);
+    }
+    count += total;
+  }
+  return count;
+}
+
+// Packs the VPLs whose maps are to be drawn, in the order of their slots, those that need only the moving triangles last,
+// and prepares the indirect dispatches of the steps.
+void prepareSteps() {
+  uint whole = pack(false, 0u), all = pack(true, whole);
+  for (uint s = gl_LocalInvocationIndex; s < rounds * ranges; s += 256u) {
+    bool overlay = s % ranges >= allRanges;
+    WorkList large = WorkList(0u, 1u, slices, 0u);
+    uint end = overlay ? all : whole, first = s / ranges * kRound;
+    uint count = min(end - min(first, end), kRound), batches = (count + kBatch - 1u) / kBatch;
+    steps.list[s] = Step(WorkList(overlay ? overlayGroups : allGroups, batches, 1u, count),
+                         large, WorkList(0u, 1u, 1u, 0u), large);
+  }
+}
+
+void main() {
+  chooseSlots();
+  memoryBarrierBuffer();
+  barrier();
+  prepareSteps();
 }

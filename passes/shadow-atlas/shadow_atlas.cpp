@@ -62,11 +62,13 @@ class ShadowAtlas : public Pass {
   };
   static Kernels makeKernels(PrepareContext& ctx, bool simplified, bool toStaticMaps);
   Ranges ranges(RecordContext& ctx);
+  static uint32_t groups(const std::vector<Range>& list);
+  static uint32_t rounds(uint32_t slots) { return (slots + kRound - 1) / kRound; }
   void simplifyScene(RecordContext& ctx);
-  void chooseSlots(RecordContext& ctx);
+  void chooseSlots(RecordContext& ctx, const Ranges& triangles);
   void recordStep(RecordContext& ctx, uint32_t round, uint32_t step, const Range& range);
 
-  Kernel changed_, choose_, clear_, setup_, compose_;
+  Kernel changed_, choose_, clear_, compose_;
   bool hasState_ = false, staticMaps_ = false, simplify_ = false, uploaded_ = false;
   // `still_` is the part of exact_ for static geometry, where that has maps of its own.
   Kernels exact_, still_, simplified_;
@@ -199,7 +201,6 @@ void ShadowAtlas::prepare(PrepareContext& ctx) {
   defines["REFRESH"] = refresh == "split" ? "2" : refresh == "stale" ? "3" : "1";
   defines["CHANGE"] = hasState_ && ctx.has("change") ? "1" : "0";
   choose_ = ctx.compute("shadow-atlas/choose.comp", defines);
-  setup_ = ctx.compute("shadow-atlas/setup.comp", Defines{});
   exact_ = makeKernels(ctx, false, false);
   if (staticMaps_) compose_ = ctx.compute("shadow-atlas/compose.comp", Defines{});
   if (staticMaps_ && !simplify_) still_ = makeKernels(ctx, false, true);
@@ -275,8 +276,16 @@ glm::vec4 moversOf(const scene::Frame& frame) {
              : glm::vec4(0.5f * (box.low + box.high), 0.5f * glm::length(box.high - box.low));
 }
 
-void ShadowAtlas::chooseSlots(RecordContext& ctx) {
-  const uint32_t slots = uint32_t(ctx.count("vpls"));
+// Work groups of draw.comp for the largest of some ranges.
+uint32_t ShadowAtlas::groups(const std::vector<Range>& list) {
+  constexpr uint32_t kDrawn = kDrawGroup * kTriangles;
+  uint32_t largest = 0;
+  for (const Range& r : list) largest = std::max(largest, r.count);
+  return (largest + kDrawn - 1) / kDrawn;
+}
+
+void ShadowAtlas::chooseSlots(RecordContext& ctx, const Ranges& triangles) {
+  const uint32_t slots = uint32_t(ctx.count("vpls")), size = uint32_t(ctx.parameters().integer("size"));
   const uint32_t columns = std::min(slots, kGroupsPerRow), rows = (slots + kGroupsPerRow - 1) / kGroupsPerRow;
   const auto movers = scene::moverSpheres<kMovers>(ctx.frame());
   if (hasState_) {
@@ -287,7 +296,14 @@ void ShadowAtlas::chooseSlots(RecordContext& ctx) {
         .dispatch(columns, rows);
   }
   Commands choose = ctx.use(choose_);
-  choose.constant("slots", slots).constant("frameNumber", uint32_t(ctx.frameNumber()));
+  choose.constant("slots", slots)
+      .constant("frameNumber", uint32_t(ctx.frameNumber()))
+      .constant("rounds", rounds(slots))
+      .constant("ranges", uint32_t(triangles.all.size() + triangles.overlay.size()))
+      .constant("allRanges", uint32_t(triangles.all.size()))
+      .constant("allGroups", groups(triangles.all))
+      .constant("overlayGroups", groups(triangles.overlay))
+      .constant("slices", (size * size + kSliceTexels - 1) / kSliceTexels);
   if (hasState_) choose.constant("movers", moversOf(ctx.frame()));
   choose.dispatch(1);
   Commands clear = ctx.use(clear_);
@@ -303,33 +319,16 @@ void ShadowAtlas::record(RecordContext& ctx) {
     nothing.uint32[0] = scene::kParaboloidEmpty;
     ctx.clear("atlas", nothing);
   }
-  chooseSlots(ctx);
-
   const Ranges triangles = ranges(ctx);
-  constexpr uint32_t kDrawn = kDrawGroup * kTriangles;
-  auto groups = [](const std::vector<Range>& list) {
-    uint32_t largest = 0;
-    for (const Range& r : list) largest = std::max(largest, r.count);
-    return (largest + kDrawn - 1) / kDrawn;
-  };
+  chooseSlots(ctx, triangles);
   const uint32_t slots = uint32_t(ctx.count("vpls")), all = uint32_t(triangles.all.size()),
-                 steps = all + uint32_t(triangles.overlay.size()), rounds = (slots + kRound - 1) / kRound,
-                 size = uint32_t(ctx.parameters().integer("size"));
-  ctx.use(setup_)
-      .constant("slots", slots)
-      .constant("rounds", rounds)
-      .constant("ranges", steps)
-      .constant("allRanges", all)
-      .constant("allGroups", groups(triangles.all))
-      .constant("overlayGroups", groups(triangles.overlay))
-      .constant("slices", (size * size + kSliceTexels - 1) / kSliceTexels)
-      .dispatch(1);
-  for (uint32_t round = 0; round < rounds; ++round)
+                 steps = all + uint32_t(triangles.overlay.size());
+  for (uint32_t round = 0; round < rounds(slots); ++round)
     for (uint32_t i = 0; i < all; ++i) recordStep(ctx, round, round * steps + i, triangles.all[i]);
   if (!staticMaps_) return;
   const uint32_t columns = std::min(slots, kGroupsPerRow), rows = (slots + kGroupsPerRow - 1) / kGroupsPerRow;
   ctx.use(compose_).constant("slots", slots).dispatch(columns, rows);
-  for (uint32_t round = 0; round < rounds; ++round)
+  for (uint32_t round = 0; round < rounds(slots); ++round)
     for (uint32_t i = all; i < steps; ++i)
       recordStep(ctx, round, round * steps + i, triangles.overlay[i - all]);
 }

@@ -1,17 +1,18 @@
-// Computes the boxes of some levels of a bounding volume hierarchy from this frame's vertices, beginning with the deepest
-// of these levels. The boxes below it are already those of this frame. A dispatch for several levels has a single group.
+// Computes boxes of a bounding volume hierarchy from this frame's vertices: in each invocation those of one part of the
+// tree (RefitOrder of framework/scene/rays/bvh.h), from its leaves up.
 #include "records/rays.h"
 
-layout(local_size_x = 256) in;
+layout(local_size_x = 64) in;
 
 layout(std430) readonly buffer Positions { vec4 positions[]; };
 layout(std430) readonly buffer Triangles { uvec4 triangles[]; };  // `rayTriangles` of rays/trace.glsl
-layout(std430) coherent buffer Nodes { BvhNode nodes[]; };
-layout(std430) readonly buffer Levels { uint levels[]; };  // first node of each, then the number of nodes
+layout(std430) buffer Nodes { BvhNode nodes[]; };
+layout(std430) readonly buffer Order { uint order[]; };
+layout(std430) readonly buffer Parts { uint parts[]; };
 
 layout(push_constant) uniform Constants {
   uint place;  // where the second node of the tree is, less 1
-  uint highest, deepest;
+  uint begin, end;  // parts of this round
 };
 
 const float kFarthest = 3.4e38;
@@ -36,11 +37,8 @@ void refit(uint node) {
 }
 
 void main() {
-  uint rowSize = gl_NumWorkGroups.x * gl_WorkGroupSize.x, size = gl_NumWorkGroups.y * rowSize;
-  uint index = gl_GlobalInvocationID.y * rowSize + gl_GlobalInvocationID.x;
-  for (uint level = deepest + 1u; level-- > highest;) {
-    for (uint node = levels[level] + index; node < levels[level + 1u]; node += size) refit(node);
-    memoryBarrierBuffer();
-    barrier();
-  }
+  uint rowSize = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  uint part = begin + gl_GlobalInvocationID.y * rowSize + gl_GlobalInvocationID.x;
+  if (part >= end) return;
+  for (uint i = parts[part]; i < parts[part + 1u]; ++i) refit(order[i]);
 }

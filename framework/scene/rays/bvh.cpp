@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 namespace fovea::scene {
 namespace {
@@ -40,11 +41,10 @@ class Builder {
   Bvh build() {
     Bvh bvh;
     bvh.nodes.push_back(leaf(0, uint32_t(order_.size())));
-    bvh.levels.push_back(0);
-    for (uint32_t begin = 0, depth = 0; begin < bvh.nodes.size(); begin = bvh.levels.back(), ++depth) {
-      const uint32_t end = uint32_t(bvh.nodes.size());
+    for (uint32_t begin = 0, end = 1, depth = 0; begin < end; ++depth) {
       for (uint32_t i = begin; i < end; ++i) divide(bvh.nodes, i, depth);
-      bvh.levels.push_back(end);
+      begin = end;
+      end = uint32_t(bvh.nodes.size());
     }
     for (uint32_t& t : order_) t += first_;
     bvh.order = std::move(order_);
@@ -131,6 +131,45 @@ class Builder {
 }  // namespace
 
 Bvh buildBvh(const Geometry& geometry, TriangleRange range) { return Builder(geometry, range).build(); }
+
+RefitOrder refitOrder(const Bvh& bvh, uint32_t nodesPerPart) {
+  RefitOrder order{{}, {0}, {0}};
+  const auto count = uint32_t(bvh.nodes.size());
+  std::vector<uint32_t> size(count, 1);  // nodes of each subtree that are in no part yet
+  const auto isLeaf = [&](uint32_t node) { return bvh.nodes[node].count > 0 || bvh.order.empty(); };
+  const auto addPart = [&](uint32_t root) {
+    std::vector<uint32_t> stack{root};
+    const auto begin = std::ptrdiff_t(order.nodes.size());
+    while (!stack.empty()) {
+      const uint32_t node = stack.back();
+      stack.pop_back();
+      if (size[node] == 0) continue;
+      order.nodes.push_back(node);
+      if (!isLeaf(node)) stack.insert(stack.end(), {bvh.nodes[node].first, bvh.nodes[node].first + 1});
+    }
+    std::reverse(order.nodes.begin() + begin, order.nodes.end());
+    order.parts.push_back(uint32_t(order.nodes.size()));
+  };
+  while (order.nodes.size() < count) {
+    for (uint32_t node = count; node-- > 0;)  // children before their parents
+      if (size[node] > 0 && !isLeaf(node))
+        size[node] = 1 + size[bvh.nodes[node].first] + size[bvh.nodes[node].first + 1];
+    std::vector<uint32_t> stack{0};
+    const auto begin = std::ptrdiff_t(order.nodes.size());
+    while (!stack.empty()) {
+      const uint32_t node = stack.back();
+      stack.pop_back();
+      if (size[node] == 0) continue;
+      if (size[node] <= nodesPerPart)
+        addPart(node);
+      else
+        stack.insert(stack.end(), {bvh.nodes[node].first, bvh.nodes[node].first + 1});
+    }
+    for (const uint32_t node : std::span(order.nodes).subspan(size_t(begin))) size[node] = 0;
+    order.rounds.push_back(uint32_t(order.parts.size() - 1));
+  }
+  return order;
+}
 
 BvhTables::BvhTables() : nodes(kBvhTops) { nodes[0].first = kBvhStill; }
 

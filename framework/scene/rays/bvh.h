@@ -21,12 +21,23 @@ struct Bvh {
   // Level by level: the root, its children, their children. The two children of a node are adjacent. A leaf's entries
   // are those of `order`. A tree without triangles is one empty leaf.
   std::vector<BvhNode> nodes;
-  std::vector<uint32_t> levels;  // first node of each level, then the number of nodes
-  std::vector<uint32_t> order;   // indices into Geometry::triangles
+  std::vector<uint32_t> order;  // indices into Geometry::triangles
 };
 
 // By the binned surface area heuristic (Wald 2007).
 Bvh buildBvh(const Geometry& geometry, TriangleRange range = {});
+
+// An order in which the boxes of a tree can be computed again after its triangles have moved: in rounds, of which each
+// works on many parts of the tree at once, and on the nodes of a part one after the other.
+struct RefitOrder {
+  std::vector<uint32_t>
+      nodes;  // part by part; the children of a node precede it or belong to an earlier round
+  std::vector<uint32_t> parts;   // first element of `nodes` of each part, then the number of nodes
+  std::vector<uint32_t> rounds;  // first part of each round, then the number of parts
+};
+
+// Parts are as large as `nodesPerPart`, which is at least 1, allows.
+RefitOrder refitOrder(const Bvh& bvh, uint32_t nodesPerPart);
 
 // Trees as shaders/rays/bvh.glsl reads them.
 struct BvhTables {

@@ -17,41 +17,24 @@
 namespace fovea::scene {
 namespace {
 
+// On a GPU enough for a tree of 100,000 nodes to be done in three rounds.
+constexpr uint32_t kNodesPerPart = 64;
+
 // Push constants of refit.comp.
 struct Constants {
-  uint32_t place, highest, deepest;
+  uint32_t place, begin, end;
 };
-
-// A dispatch of refit.comp.
-struct Dispatch {
-  uint32_t highest, deepest;  // levels of the tree
-  uint32_t groups;
-};
-
-// From the deepest level to the root. Of levels that are neighbours, a single group works on all that are small.
-std::vector<Dispatch> dispatches(const std::vector<uint32_t>& levels, uint32_t groupSize) {
-  const uint32_t small = 4 * groupSize;
-  const auto nodes = [&](uint32_t level) { return levels[level + 1] - levels[level]; };
-  std::vector<Dispatch> list;
-  for (auto level = uint32_t(levels.size() - 1); level-- > 0;) {
-    const bool isSmall = nodes(level) <= small;
-    if (isSmall && !list.empty() && list.back().groups == 1)
-      list.back().highest = level;
-    else
-      list.push_back({level, level, isSmall ? 1 : (nodes(level) + groupSize - 1) / groupSize});
-  }
-  return list;
-}
 
 }  // namespace
 
 struct RayTables::Impl {
   gpu::Device& device;
   gpu::Buffer nodes, triangles;
-  gpu::Buffer levels;  // of the tree of what moves
-  uint32_t place = 0;  // of its second node, less 1
+  // The tree of what moves:
+  uint32_t place = 0;               // of its second node, less 1
+  gpu::Buffer orderedNodes, parts;  // see RefitOrder
+  std::vector<uint32_t> rounds;
   gpu::Pipeline refit;
-  std::vector<Dispatch> refits;
 
   Impl(gpu::Device& d, const Scene& scene, const Geometry& geometry, bool wanted) : device(d) {
     const uint32_t all = wanted ? uint32_t(geometry.triangles.size()) : 0;
@@ -68,11 +51,18 @@ struct RayTables::Impl {
     triangles = longTable(device, "triangles that rays meet", std::move(tables.triangles));
     if (moving.order.empty()) return;
     refit = gpu::Pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("scene/refit.comp")});
-    refits = dispatches(moving.levels, refit.interface().localSize[0]);
-    const auto bytes = std::as_bytes(std::span(moving.levels));
-    levels = gpu::Buffer(device, {"levels of the tree of what moves", bytes.size(),
-                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::Device});
-    gpu::upload(device, levels, bytes);
+    RefitOrder order = refitOrder(moving, kNodesPerPart);
+    orderedNodes = table("order in which what moves is refitted", order.nodes);
+    parts = table("parts of the tree of what moves", order.parts);
+    rounds = std::move(order.rounds);
+  }
+
+  gpu::Buffer table(const char* name, const std::vector<uint32_t>& data) const {
+    const auto bytes = std::as_bytes(std::span(data));
+    gpu::Buffer buffer(device,
+                       {name, bytes.size(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::Device});
+    gpu::upload(device, buffer, bytes);
+    return buffer;
   }
 };
 
@@ -81,20 +71,22 @@ RayTables::RayTables(gpu::Device& device, const Scene& scene, const Geometry& ge
 RayTables::~RayTables() = default;
 
 void RayTables::record(VkCommandBuffer cmd, gpu::Buffer& positions) {
-  if (impl_->refits.empty()) return;
+  if (impl_->rounds.empty()) return;
   const gpu::Pipeline& pipeline = impl_->refit;
   bindNamed(impl_->device, cmd, pipeline, {},
             {{"Positions", &positions},
              {"Triangles", &impl_->triangles},
              {"Nodes", &impl_->nodes},
-             {"Levels", &impl_->levels}});
-  for (const Dispatch& d : impl_->refits) {
+             {"Order", &impl_->orderedNodes},
+             {"Parts", &impl_->parts}});
+  const uint32_t groupSize = pipeline.interface().localSize[0];
+  for (size_t round = 0; round + 1 < impl_->rounds.size(); ++round) {
     constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     gpu::memoryBarrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,
                        VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-    const Constants constants{impl_->place, d.highest, d.deepest};
+    const Constants constants{impl_->place, impl_->rounds[round], impl_->rounds[round + 1]};
     vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof constants, &constants);
-    dispatchRows(cmd, d.groups);
+    dispatchRows(cmd, (constants.end - constants.begin + groupSize - 1) / groupSize);
   }
 }
 
