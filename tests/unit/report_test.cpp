@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/base/json.h"
+#include "framework/graph/report/traffic.h"
 #include "framework/graph/verify/null_device.h"
 #include "tests/unit/graph_support.h"
 
@@ -52,6 +53,7 @@ outputs
   o            h.image_out
 
 memory: transient 16.0 KiB (32.0 KiB without aliasing), kept 32.0 KiB
+traffic: pictures 48 B a pixel (48.0 KiB read, 48.0 KiB written), all else 0 B read, 0 B written
 )");
 }
 
@@ -78,6 +80,27 @@ TEST(Report, JsonHoldsTheSame) {
   EXPECT_EQ(v.find("memory")->find("transient")->integer, 16384);
   EXPECT_EQ(v.find("memory")->find("transient_without_aliasing")->integer, 32768);
   EXPECT_EQ(v.find("outputs")->find("o")->string, "h.image_out");
+  const json::Value& pictures = *level.find("passes")->items[0].find("traffic")->find("pictures");
+  EXPECT_EQ(pictures.find("read")->integer, 2 * 16384);  // `a`, and its own of the last frame
+  EXPECT_EQ(pictures.find("written")->integer, 16384);
+  EXPECT_EQ(v.find("traffic")->find("pictures")->find("read")->integer, 3 * 16384);
+  EXPECT_EQ(v.find("traffic")->find("picture_bytes_per_pixel")->real, 48);
+}
+
+// Buffers and arrays of images are no pictures: 10 VPLs of 64 bytes, 20 paths of 32, and 10 maps of 16x16 texels.
+TEST(Report, TrafficOfBuffersAndLayersIsApart) {
+  const Compiled c = compileText(R"({"passes": {
+    "emit": {"type": "emit", "params": {"vpl_count": 10}},
+    "atlas": {"type": "atlas", "inputs": {"vpls": "emit.vpls"}, "params": {"map_size": 16}}},
+    "outputs": {"o": "atlas"}})");
+  const std::vector<PassTraffic> list = traffic(c.plan);
+  const PassTraffic &emit = list[c.pass("emit")], &atlas = list[c.pass("atlas")];
+  EXPECT_EQ(emit.others.written, 10u * 64 + 20 * 32);
+  EXPECT_EQ(emit.others.read, 0u);
+  EXPECT_EQ(atlas.others.read, 10u * 64);
+  EXPECT_EQ(atlas.others.written, 10u * 16 * 16 * 4);
+  EXPECT_EQ(emit.pictures.total() + atlas.pictures.total(), 0u);
+  EXPECT_EQ(outputPixels(*c.graph), 0u);
 }
 
 TEST(Report, InputsAndSubGraphNamesInDot) {

@@ -8,6 +8,7 @@
 #include "framework/gpu/format.h"
 #include "framework/graph/compile/compile.h"
 #include "framework/graph/compile/schedule.h"
+#include "framework/graph/report/traffic.h"
 
 namespace fovea::graph {
 
@@ -176,6 +177,25 @@ static bool isOnHost(const BoundGraph& graph, uint32_t pass) {
   return d.kind == PassKind::Host || (d.tracesRays && graph.raysOnHost);
 }
 
+namespace {
+
+struct AllTraffic : PassTraffic {
+  uint64_t pixels = 0;
+  double perPixel() const { return pixels > 0 ? double(pictures.total()) / double(pixels) : 0; }
+};
+
+AllTraffic sum(const std::vector<PassTraffic>& passes, const BoundGraph& graph) {
+  AllTraffic all;
+  for (const PassTraffic& t : passes) {
+    all.pictures += t.pictures;
+    all.others += t.others;
+  }
+  all.pixels = outputPixels(graph);
+  return all;
+}
+
+}  // namespace
+
 std::string planText(const Plan& plan) {
   const BoundGraph& graph = *plan.graph;
   std::string text = fmt::format("graph {}", graph.name);
@@ -224,6 +244,11 @@ std::string planText(const Plan& plan) {
   text +=
       fmt::format("\nmemory: transient {} ({} without aliasing), kept {}\n", printBytes(plan.bytesAliased),
                   printBytes(plan.bytesUnaliased), printBytes(plan.bytesKept));
+  const AllTraffic all = sum(traffic(plan), graph);
+  text +=
+      fmt::format("traffic: pictures {:.0f} B a pixel ({} read, {} written), all else {} read, {} written\n",
+                  all.perPixel(), printBytes(all.pictures.read), printBytes(all.pictures.written),
+                  printBytes(all.others.read), printBytes(all.others.written));
   return text;
 }
 
@@ -311,10 +336,18 @@ static nlohmann::ordered_json stepsJson(const Plan& plan, uint32_t pass) {
   return list;
 }
 
+static nlohmann::ordered_json trafficJson(const PassTraffic& t) {
+  const auto bytes = [](const Traffic& moved) {
+    return nlohmann::ordered_json{{"read", moved.read}, {"written", moved.written}};
+  };
+  return {{"pictures", bytes(t.pictures)}, {"others", bytes(t.others)}};
+}
+
 std::string planJson(const Plan& plan) {
   using Json = nlohmann::ordered_json;
   const BoundGraph& graph = *plan.graph;
   Json json{{"graph", graph.name}, {"hash", fmt::format("{:016x}", plan.hash)}, {"views", graph.views}};
+  const std::vector<PassTraffic> moved = traffic(plan);
   json["levels"] = Json::array();
   for (const Level& level : plan.levels) {
     Json passes = Json::array();
@@ -322,7 +355,8 @@ std::string planJson(const Plan& plan) {
       passes.push_back({{"name", graph.passes[p].name},
                         {"type", graph.passes[p].declaration->type},
                         {"view", graph.views[graph.passes[p].view]},
-                        {"host", isOnHost(graph, p)}});
+                        {"host", isOnHost(graph, p)},
+                        {"traffic", trafficJson(moved[p])}});
       if (!plan.steps.empty() && !plan.steps[p].empty()) passes.back()["steps"] = stepsJson(plan, p);
     }
     json["levels"].push_back({{"barriers", batchJson(level.before, graph)}, {"passes", std::move(passes)}});
@@ -353,6 +387,9 @@ std::string planJson(const Plan& plan) {
   json["memory"] = {{"transient", plan.bytesAliased},
                     {"transient_without_aliasing", plan.bytesUnaliased},
                     {"kept", plan.bytesKept}};
+  const AllTraffic all = sum(moved, graph);
+  json["traffic"] = trafficJson(all);
+  json["traffic"]["picture_bytes_per_pixel"] = all.perPixel();
   return json.dump(2) + "\n";
 }
 
