@@ -388,8 +388,11 @@ def readme(library):
     parts = [INTRODUCTION.format(contents="".join(f"- [{title}](#{anchor(title)}): {about}\n"
                                                   for title, about, _ in SUBJECTS.values()))]
     bindings = sorted((b for h in library.values() for b in h.bindings), key=lambda b: int(b[0]))
-    parts.append(SET_1 + "".join(f"| {n} | `{name}` | {(what or '').replace('|', chr(92) + '|')} |\n"
-                                 for n, name, what in bindings))
+    rows = {}  # a binding may be something else on some devices
+    for n, name, what in bindings:
+        rows.setdefault(n, []).append((f"`{name}`", (what or "").replace("|", chr(92) + "|")))
+    parts.append(SET_1 + "".join(f"| {n} | {' or '.join(dict.fromkeys(names))} | {'; or '.join(dict.fromkeys(whats))} |\n"
+                                 for n, row in rows.items() for names, whats in [zip(*row)]))
     parts.append(DEFINES + "".join(f"| [`{path}`](#{anchor(path)}) | {h.expectations()} |\n"
                                    for path, h in library.items() if h.expectations()))
     language = library["device/language.glsl"]

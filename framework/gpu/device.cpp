@@ -131,6 +131,10 @@ void Device::Impl::chooseFeatures(FeatureChain& enabled) const {
   vkGetPhysicalDeviceFeatures2(physical, &available.core);
   for (const auto& [name, value] : enabled.required()) *value = VK_TRUE;
   for (const auto& [name, value] : enabled.dispensable()) *value = !lacks(name);
+  if (!lacks(VK_KHR_RAY_QUERY_EXTENSION_NAME)) {
+    enabled.linkRays();
+    enabled.structures.accelerationStructure = enabled.rayQueries.rayQuery = VK_TRUE;
+  }
   const FeatureChain::List from = available.optional(), to = enabled.optional();
   for (size_t i = 0; i < from.size(); ++i) *to[i].second = *from[i].second;
 }
@@ -192,6 +196,8 @@ void Device::Impl::createDevice(const FeatureChain& enabled) {
   std::vector<const char*> extensions;
   if (!lacks(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME))
     extensions.push_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+  if (!lacks(VK_KHR_RAY_QUERY_EXTENSION_NAME))
+    extensions.insert(extensions.end(), std::begin(kRayExtensions), std::end(kRayExtensions));
   VkDeviceCreateInfo deviceInfo{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &enabled.core};
   deviceInfo.queueCreateInfoCount = 1;
   deviceInfo.pQueueCreateInfos = &queueInfo;
@@ -205,7 +211,8 @@ void Device::Impl::createDevice(const FeatureChain& enabled) {
 // What does not depend on who made the device.
 void Device::Impl::start(const FeatureChain& enabled, const DeviceOptions& options) {
   describe(enabled);
-  memory = std::make_unique<DeviceMemory>(physical, device, maxAllocation, options.memoryLimit);
+  memory = std::make_unique<DeviceMemory>(physical, device, maxAllocation, options.memoryLimit,
+                                          !lacks(VK_KHR_RAY_QUERY_EXTENSION_NAME));
   if (!lacks(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) && log.validation != Validation::GpuAssisted)
     pushDescriptorSet = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
         vkGetDeviceProcAddr(device, "vkCmdPushDescriptorSetKHR"));

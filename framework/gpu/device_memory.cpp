@@ -21,8 +21,9 @@ std::string mebibytes(uint64_t bytes) {
 
 }  // namespace
 
-DeviceMemory::DeviceMemory(VkPhysicalDevice physical, VkDevice device, uint64_t maxAllocation, uint64_t limit)
-    : device_(device), maxAllocation_(maxAllocation), limit_(limit) {
+DeviceMemory::DeviceMemory(VkPhysicalDevice physical, VkDevice device, uint64_t maxAllocation, uint64_t limit,
+                           bool addresses)
+    : device_(device), maxAllocation_(maxAllocation), limit_(limit), addresses_(addresses) {
   vkGetPhysicalDeviceMemoryProperties(physical, &properties_);
 }
 
@@ -57,7 +58,9 @@ VkDeviceMemory DeviceMemory::allocate(uint64_t bytes, uint32_t memoryTypeBits, V
     fail(mebibytes(used) + " of " + mebibytes(limit) + " device memory are in use");
   if (maxAllocation_ && bytes > maxAllocation_)
     fail("this device's maxMemoryAllocationSize is " + mebibytes(maxAllocation_));
-  VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+  VkMemoryAllocateFlagsInfo flagsInfo{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
+  if (addresses_) flagsInfo.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &flagsInfo};
   info.allocationSize = bytes;
   info.memoryTypeIndex = index;
   VkDeviceMemory memory = VK_NULL_HANDLE;

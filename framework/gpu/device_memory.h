@@ -12,8 +12,10 @@ namespace fovea::gpu {
 // The memory of a device, counted in bytes. May be used by several threads at once.
 class DeviceMemory {
  public:
-  // limit: of the bytes that are allocated at a time; 0 for the size of each heap.
-  DeviceMemory(VkPhysicalDevice physical, VkDevice device, uint64_t maxAllocation, uint64_t limit);
+  // limit: of the bytes that are allocated at a time; 0 for the size of each heap. addresses: whether the addresses of
+  // buffers may be asked for.
+  DeviceMemory(VkPhysicalDevice physical, VkDevice device, uint64_t maxAllocation, uint64_t limit,
+               bool addresses);
 
   // what: names the resource in messages. Throws OutOfMemory.
   VkDeviceMemory allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemoryPropertyFlags flags,
@@ -40,6 +42,7 @@ class DeviceMemory {
   VkDevice device_;
   VkPhysicalDeviceMemoryProperties properties_{};
   uint64_t maxAllocation_, limit_;
+  bool addresses_;
   mutable std::mutex mutex_;
   uint64_t allocated_ = 0, peak_ = 0;
   uint64_t heapAllocated_[VK_MAX_MEMORY_HEAPS] = {};

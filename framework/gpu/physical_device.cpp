@@ -16,6 +16,7 @@ constexpr const char* kTexelLimit = "maxTexelBufferElements";
 constexpr uint32_t kTexels = 1 << 24;  // less are too few for lists of voxels and for large scenes
 constexpr const char* kSnormAttachments = "VK_FORMAT_R16G16_SNORM";  // as colour attachments
 constexpr const char* kDispensableExtensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+constexpr const char* kRays = VK_KHR_RAY_QUERY_EXTENSION_NAME;  // stands for all of kRayExtensions
 
 std::string versionText(uint32_t v) {
   return std::to_string(VK_API_VERSION_MAJOR(v)) + "." + std::to_string(VK_API_VERSION_MINOR(v)) + "." +
@@ -155,6 +156,14 @@ int findQueueFamily(VkPhysicalDevice device) {
   return found == families.end() ? -1 : int(found - families.begin());
 }
 
+// All but the place in a chain.
+template <class Features>
+void copyFeatures(const VkBaseInStructure& from, Features& to) {
+  void* const next = to.pNext;
+  to = reinterpret_cast<const Features&>(from);
+  to.pNext = next;
+}
+
 std::vector<std::string> missingFeatures(VkPhysicalDevice device,
                                          const VkPhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_3)
@@ -173,10 +182,14 @@ std::vector<std::string> missingDispensables(VkPhysicalDevice device,
                                              const std::vector<VkExtensionProperties>& extensions) {
   std::vector<std::string> missing;
   FeatureChain features;
+  const bool rays =
+      std::ranges::all_of(kRayExtensions, [&](const char* name) { return hasExtension(extensions, name); });
+  if (rays) features.linkRays();
   vkGetPhysicalDeviceFeatures2(device, &features.core);
   for (const auto& [name, value] : features.dispensable()) {
     if (!*value) missing.push_back(name);
   }
+  if (!features.haveRays()) missing.emplace_back(kRays);
   for (const char* name : kDispensableExtensions) {
     if (!hasExtension(extensions, name)) missing.push_back(name);
   }
@@ -268,19 +281,10 @@ FeatureChain::FeatureChain() {
   core.pNext = &v11;
   v11.pNext = &v12;
   v12.pNext = &v13;
+  structures.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
+  structures.pNext = &rayQueries;
+  rayQueries.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
 }
-
-namespace {
-
-// All but the place in a chain.
-template <class Features>
-void copyFeatures(const VkBaseInStructure& from, Features& to) {
-  void* const next = to.pNext;
-  to = reinterpret_cast<const Features&>(from);
-  to.pNext = next;
-}
-
-}  // namespace
 
 void FeatureChain::read(const VkPhysicalDeviceFeatures2& chain) {
   for (auto* link = reinterpret_cast<const VkBaseInStructure*>(&chain); link; link = link->pNext) {
@@ -288,6 +292,8 @@ void FeatureChain::read(const VkPhysicalDeviceFeatures2& chain) {
     if (link->sType == v11.sType) copyFeatures(*link, v11);
     if (link->sType == v12.sType) copyFeatures(*link, v12);
     if (link->sType == v13.sType) copyFeatures(*link, v13);
+    if (link->sType == structures.sType) copyFeatures(*link, structures);
+    if (link->sType == rayQueries.sType) copyFeatures(*link, rayQueries);
   }
 }
 
@@ -325,6 +331,7 @@ std::vector<std::string> dispensableFeatures() {
   FeatureChain features;
   for (const auto& [name, value] : features.dispensable()) names.push_back(name);
   names.insert(names.end(), std::begin(kDispensableExtensions), std::end(kDispensableExtensions));
+  names.emplace_back(kRays);
   names.emplace_back(kTexelLimit);
   names.emplace_back(kSnormAttachments);
   return names;
@@ -357,7 +364,7 @@ FeatureChain::List FeatureChain::optional() {
       {"drawIndirectCount", &v12.drawIndirectCount},
       {"storageBuffer8BitAccess", &v12.storageBuffer8BitAccess},
       {"storageBuffer16BitAccess", &v11.storageBuffer16BitAccess},
-      {"bufferDeviceAddress", &v12.bufferDeviceAddress},  // used by GPU-assisted validation
+      {"bufferDeviceAddress", &v12.bufferDeviceAddress},  // for rays and GPU-assisted validation
       {"subgroupSizeControl", &v13.subgroupSizeControl},
       {"computeFullSubgroups", &v13.computeFullSubgroups},
       {"shaderZeroInitializeWorkgroupMemory", &v13.shaderZeroInitializeWorkgroupMemory},
@@ -442,6 +449,7 @@ PhysicalDevice describeExisting(const ExistingDevice& existing, FeatureChain& en
     if (!*value) missOnce(d.info.missing, name);
   for (const auto& [name, value] : enabled.dispensable())
     if (!*value) missOnce(d.info.without, name);
+  if (!enabled.haveRays()) missOnce(d.info.without, kRays);
   for (const char* name : kDispensableExtensions)
     if (std::find(existing.extensions.begin(), existing.extensions.end(), name) == existing.extensions.end())
       missOnce(d.info.without, name);

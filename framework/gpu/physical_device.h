@@ -11,7 +11,7 @@
 
 namespace fovea::gpu {
 
-// The features of Vulkan 1.0 to 1.3 as one pNext chain. Not copyable, because it points into itself.
+// The features of Vulkan 1.0 to 1.3, and those of rays, as one pNext chain. Not copyable, because it points into itself.
 struct FeatureChain {
   FeatureChain();
   FeatureChain(const FeatureChain&) = delete;
@@ -20,6 +20,15 @@ struct FeatureChain {
   VkPhysicalDeviceVulkan11Features v11{};
   VkPhysicalDeviceVulkan12Features v12{};
   VkPhysicalDeviceVulkan13Features v13{};
+  VkPhysicalDeviceAccelerationStructureFeaturesKHR structures{};
+  VkPhysicalDeviceRayQueryFeaturesKHR rayQueries{};
+
+  // Adds the last two to the chain, which only devices with their extensions know.
+  void linkRays() { v13.pNext = &structures; }
+  // Whether shaders can trace rays by ray queries.
+  bool haveRays() const {
+    return rayQueries.rayQuery && structures.accelerationStructure && v12.bufferDeviceAddress;
+  }
 
   using List = std::vector<std::pair<const char*, VkBool32*>>;
   List required();
@@ -28,6 +37,11 @@ struct FeatureChain {
   // Takes over what another chain says; of features that are in none of its structures, nothing.
   void read(const VkPhysicalDeviceFeatures2& chain);
 };
+
+// What a device must have for ray queries.
+inline constexpr const char* kRayExtensions[] = {VK_KHR_RAY_QUERY_EXTENSION_NAME,
+                                                 VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                                 VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
 // Throws Error(Usage) listing dispensableFeatures() if it is none of them.
 void requireDispensable(const std::string& feature);

@@ -134,6 +134,8 @@ VkDescriptorType descriptorType(BindingKind kind) {
       return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
     case BindingKind::Sampler:
       return VK_DESCRIPTOR_TYPE_SAMPLER;
+    case BindingKind::AccelerationStructure:
+      return VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
   }
   throw Error(ExitCode::Internal, "unknown binding kind");
 }

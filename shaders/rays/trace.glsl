@@ -59,16 +59,19 @@ bool solidAt(uint triangle, uvec4 vertices, vec2 weights) {
   return solidAt(materialOf(sceneTriangle(triangle)), uvAt(vertices, weights), alphaAt(vertices, weights));
 }
 
-// trace() finds the nearest hit, or any if that suffices: on the host by Embree or the project's own tracer, on the
-// device through two trees of bounding boxes (rays/bvh.glsl).
+// trace() finds the nearest hit, or any if that suffices: on the host by Embree or the project's own tracer; on the
+// device by ray queries where it has them (rays/hardware.glsl), elsewhere through two trees of bounding boxes
+// (rays/bvh.glsl).
 #ifdef __cplusplus
 RayHit trace(Ray ray, bool any) {
   RayHit hit = RayHit(kNoTriangle, ray.far, vec2(0.0));
   traceOnHost(ray.origin, ray.direction, ray.near, ray.far, any, hit.triangle, hit.distance, hit.weights);
   return hit;
 }
-#else
+#elif defined(WITHOUT_VK_KHR_ray_query)
 #include "rays/bvh.glsl"
+#else
+#include "rays/hardware.glsl"
 #endif
 
 // The nearest hit of a ray, and whether there is any.

@@ -50,7 +50,7 @@ class Library(unittest.TestCase):
         self.assertGreater(found, 250)
 
     def test_each_binding_of_set_1_is_in_the_table(self):
-        numbers = [int(b[0]) for h in self.library.values() for b in h.bindings]
+        numbers = {int(b[0]) for h in self.library.values() for b in h.bindings}
         self.assertEqual(sorted(numbers), list(range(14)))
         self.assertTrue(all(b[2] for h in self.library.values() for b in h.bindings))
 

@@ -123,9 +123,11 @@ class Reflector {
     for (const auto& i : r.storage_images)
       addOpaque(i, isBuffer(i) ? BindingKind::StorageTexelBuffer : BindingKind::StorageImage);
     for (const auto& s : r.separate_samplers) addOpaque(s, BindingKind::Sampler);
+    for (const auto& a : r.acceleration_structures) addOpaque(a, BindingKind::AccelerationStructure);
     for (const auto& p : r.push_constant_buffers) addConstants(p);
     for (const spv::Capability c : compiler_.get_declared_capabilities()) {
       if (c == spv::CapabilityGeometry) out_.features.emplace_back("geometryShader");
+      if (c == spv::CapabilityRayQueryKHR) out_.features.emplace_back("VK_KHR_ray_query");
       if (c == spv::CapabilityInt64) out_.features.emplace_back("shaderInt64");
       if (c == spv::CapabilityDrawParameters) out_.features.emplace_back("shaderDrawParameters");
       if (c == spv::CapabilityShaderLayer || c == spv::CapabilityShaderViewportIndexLayerEXT)
@@ -186,7 +188,7 @@ class Reflector {
 
   void addOpaque(const spirv_cross::Resource& r, BindingKind kind) {
     ReflectedBinding b = base(r, kind);
-    if (kind != BindingKind::Sampler) {
+    if (kind != BindingKind::Sampler && kind != BindingKind::AccelerationStructure) {
       const spirv_cross::SPIRType& texel = compiler_.get_type(compiler_.get_type(r.type_id).image.type);
       b.integerTexels = texel.basetype != spirv_cross::SPIRType::Float;
     }

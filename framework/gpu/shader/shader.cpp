@@ -24,7 +24,8 @@ constexpr size_t kMaxIncludeDepth = 64;
 
 constexpr const char* kPreamble =
     "#extension GL_GOOGLE_include_directive : enable\n"
-    "#extension GL_EXT_samplerless_texture_functions : enable\n";
+    "#extension GL_EXT_samplerless_texture_functions : enable\n"
+    "#extension GL_EXT_ray_query : enable\n";
 
 EShLanguage stageOf(const std::string& name) {
   if (name.ends_with(".comp")) return EShLangCompute;

@@ -23,7 +23,8 @@ enum class BindingKind {
   SampledImage,
   CombinedImageSampler,
   StorageImage,
-  Sampler
+  Sampler,
+  AccelerationStructure
 };
 
 struct ReflectedMember {  // of a block or of a struct in one

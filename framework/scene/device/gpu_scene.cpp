@@ -9,6 +9,7 @@
 
 #include "fovea/error.h"
 #include "framework/gpu/device.h"
+#include "framework/gpu/rays/acceleration_structure.h"
 #include "framework/gpu/resources.h"
 #include "framework/scene/device/animator.h"
 #include "framework/scene/device/environment_image.h"
@@ -45,6 +46,11 @@ gpu::Buffer makeBuffer(gpu::Device& device, const char* name, std::vector<T> dat
   gpu::Buffer buffer(device, {name, data.size() * sizeof(T), usage, gpu::MemoryKind::Device});
   gpu::upload(device, buffer, std::as_bytes(std::span(data)));
   return buffer;
+}
+
+// How positions must be usable for rays.
+VkBufferUsageFlags rayInput(const gpu::Device& device) {
+  return device.lacks(VK_KHR_RAY_QUERY_EXTENSION_NAME) ? 0 : gpu::kBuildInputUsage;
 }
 
 std::vector<uint32_t> indexList(const Geometry& g) {
@@ -92,7 +98,7 @@ struct GpuScene::Impl {
   uint32_t objectCount;
   std::vector<gpu::Buffer> objects;    // one per slot
   std::unique_ptr<Animator> animator;  // null if nothing moves
-  RayTables rayTables;
+  std::unique_ptr<RayTables> rayTables;
   EmitterTables emitterTables;
   GpuTextures textures;
   gpu::Image environmentMap;
@@ -111,7 +117,6 @@ struct GpuScene::Impl {
         fullMaterials(fullMaterials_),
         rays(rays_),
         objectCount(std::max(1u, uint32_t(g.objects.size()))),
-        rayTables(d, scene, g, rays_.device),
         emitterTables(d, scene, g, fullMaterials_, rays_.device),
         textures(d, scene, fullMaterials_),
         environmentMap(environmentImage(d, scene.environmentMap.get(), preExposure(scene))),
@@ -122,7 +127,8 @@ struct GpuScene::Impl {
     static_assert(sizeof(Triangle) == 16);
     triangles = makeBuffer(device, "scene triangles", triangleList(g), kTexelUsage);
     positions = makeBuffer(device, "scene positions", positionList(g),
-                           kTexelUsage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+                           kTexelUsage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | rayInput(device));
+    rayTables = fovea::scene::rayTables(device, scene, g, positions, rays.device);
     previous = gpu::Buffer(device,
                            {"last positions of what moves", std::max(1u, movedVertices()) * sizeof(glm::vec4),
                             kTexelUsage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
@@ -207,16 +213,19 @@ constexpr VkDescriptorType kBindings[] = {
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 8 objects
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 9 last frame's positions
     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 10 environment map
-    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 11 nodes that rays traverse
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 11 nodes that rays traverse, or an acceleration structure
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 12 triangles that rays hit
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 13 light sources that rays are aimed at
 };
 constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
 constexpr uint32_t kTexelBindings =
     uint32_t(std::ranges::count(kBindings, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER));
+constexpr uint32_t kRaySlot = 11;
 
 // Storage buffers take the place of texel buffers where these are too small (device/texels.glsl).
 VkDescriptorType typeOf(uint32_t binding, const gpu::Device& device) {
+  if (binding == kRaySlot && !device.lacks(VK_KHR_RAY_QUERY_EXTENSION_NAME))
+    return VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
   const bool texels = kBindings[binding] == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
   return texels && device.lacks("maxTexelBufferElements") ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
                                                           : kBindings[binding];
@@ -234,14 +243,12 @@ void GpuScene::Impl::makeLayout() {
 }
 
 void GpuScene::Impl::makeSets(uint32_t slots) {
-  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * slots},
-                                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, slots},
-                                        {typeOf(3, device), kTexelBindings * slots},
-                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * slots}};
+  std::vector<VkDescriptorPoolSize> sizes;
+  for (uint32_t i = 0; i < kBindingCount; ++i) sizes.push_back({typeOf(i, device), slots});
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = slots;
-  poolInfo.poolSizeCount = uint32_t(std::size(sizes));
-  poolInfo.pPoolSizes = sizes;
+  poolInfo.poolSizeCount = uint32_t(sizes.size());
+  poolInfo.pPoolSizes = sizes.data();
   gpu::check(vkCreateDescriptorPool(device.handle(), &poolInfo, nullptr, &pool),
              "the descriptor pool of the scene");
   const std::vector<VkDescriptorSetLayout> layouts(slots, layout);
@@ -266,14 +273,17 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
     VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
   };
   constexpr VkFormat kWords = VK_FORMAT_R32G32B32A32_UINT;
+  const VkAccelerationStructureKHR structure = rayTables->structure();
+  const VkWriteDescriptorSetAccelerationStructureKHR structureInfo{
+      VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR, nullptr, 1, &structure};
   const Texels texels[kTexelBindings] = {{3, &triangles, kWords},
                                          {4, &positions},
                                          {5, &attributes},
                                          {6, &materials},
                                          {8, &objects[slot]},
                                          {9, &previous},
-                                         {11, &rayTables.nodes(), kWords},
-                                         {12, &rayTables.triangles(), kWords},
+                                         {kRaySlot, rayTables->nodes(), kWords},
+                                         {12, &rayTables->triangles(), kWords},
                                          {13, &emitterTables.texels(), kWords}};
   VkBufferView views[kTexelBindings] = {};
   VkDescriptorBufferInfo wholes[kTexelBindings];
@@ -292,6 +302,7 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
   for (uint32_t i = 0; i < 3; ++i) writes[i].pBufferInfo = &blocks[i];
   for (uint32_t i = 0; i < kTexelBindings; ++i) {
     const Texels& t = texels[i];
+    if (!t.buffer) continue;
     wholes[i] = {t.buffer->handle(), 0, VK_WHOLE_SIZE};
     writes[t.binding].pBufferInfo = &wholes[i];
     if (writes[t.binding].descriptorType != VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) continue;
@@ -300,6 +311,7 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
   }
   writes[7].pImageInfo = &image;
   writes[10].pImageInfo = &environmentInfo;
+  if (structure) writes[kRaySlot].pNext = &structureInfo;
   vkUpdateDescriptorSets(device.handle(), kBindingCount, writes, 0, nullptr);
 }
 
@@ -340,7 +352,7 @@ void GpuScene::recordMoves(VkCommandBuffer cmd, uint32_t slot) const {
   Impl& s = *impl_;
   if (!s.animator) return;
   s.animator->record(cmd, slot, s.positions, s.attributes, s.previous);
-  s.rayTables.record(cmd, s.positions);
+  s.rayTables->record(cmd);
   s.emitterTables.record(cmd, s.positions, s.triangles);
 }
 

@@ -1,5 +1,5 @@
-// The scene's bounding volume hierarchies on the device, where shaders trace rays (shaders/rays/trace.glsl): one
-// of the triangles that never move, and one of all others. Private to framework/scene.
+// The triangles of a scene on the device, as shaders trace rays through them (shaders/rays/trace.glsl). Private to
+// framework/scene.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -18,22 +18,38 @@ namespace fovea::scene {
 
 class RayTables {
  public:
-  // Builds the trees of the geometry as it is and uploads them. If `wanted` is false, the tables are those of a scene
-  // without triangles. Throws Error(OutOfMemory) if a table does not fit.
-  RayTables(gpu::Device& device, const Scene& scene, const Geometry& geometry, bool wanted);
-  ~RayTables();
+  RayTables() = default;
+  RayTables(const RayTables&) = delete;
+  RayTables& operator=(const RayTables&) = delete;
+  virtual ~RayTables() = default;
 
-  // Fits the tree of what moves to new positions of the vertices. The caller's barriers must order the commands
-  // (compute) after the writes of the positions and before all readers of the tables.
-  void record(VkCommandBuffer cmd, gpu::Buffer& positions);
+  // Follows the vertices that have moved. The caller's barriers must order the commands (compute) after the writes of
+  // the positions and before all readers of the tables.
+  virtual void record(VkCommandBuffer cmd) = 0;
 
-  gpu::Buffer& nodes() const;  // BvhNode each
-  // uvec4 in the order of leaves: three vertices, then the triangle and kRayHoles.
-  gpu::Buffer& triangles() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  // What binding 11 is: an acceleration structure, or if there is none, a buffer of BvhNode.
+  virtual VkAccelerationStructureKHR structure() const = 0;
+  virtual gpu::Buffer* nodes() = 0;
+  // Binding 12: what the primitives are that rays hit (rayTriangles in rays/hardware.glsl and rays/bvh.glsl).
+  virtual gpu::Buffer& triangles() = 0;
 };
+
+// Acceleration structures on devices with VK_KHR_ray_query, bounding volume hierarchies elsewhere, of the geometry as
+// it is. positions: of all vertices, which must live as long as the tables. If `wanted` is false, the tables are those
+// of a scene without triangles. Throws Error(OutOfMemory) if a table does not fit.
+std::unique_ptr<RayTables> rayTables(gpu::Device& device, const Scene& scene, const Geometry& geometry,
+                                     gpu::Buffer& positions, bool wanted);
+
+// Whether rays that meet the triangle have to look at its alpha mask.
+inline bool mayHaveHoles(const Scene& scene, const Triangle& triangle) {
+  const uint32_t material = triangle.material();
+  return material < scene.materials.size() && scene.materials[material].masked;
+}
+
+// The two kinds of them.
+std::unique_ptr<RayTables> rayStructures(gpu::Device& device, const Scene& scene, const Geometry& geometry,
+                                         gpu::Buffer& positions, bool wanted);
+std::unique_ptr<RayTables> rayTrees(gpu::Device& device, const Scene& scene, const Geometry& geometry,
+                                    gpu::Buffer& positions, bool wanted);
 
 }  // namespace fovea::scene
