@@ -96,6 +96,7 @@ void Timings::add(const graph::FrameResult& result) {
   if (kept.animateMs > 0 || kept.animateCpuMs > 0)
     kept.passes.insert(kept.passes.begin(),
                        graph::PassTiming{kAnimate, kept.animateMs, kept.animateCpuMs, {}});
+  for (const graph::PassTiming& t : result.passes) commands_[t.pass] = t.commands;
   const auto same = [&](const graph::FrameResult& shape) { return sameShape(shape, kept); };
   const auto shape = std::find_if(shapes_.begin(), shapes_.end(), same);
   Frame& frame = frames_.emplace_back(Frame{kept.frame, size_t(shape - shapes_.begin()), {}});
@@ -286,6 +287,11 @@ std::string Timings::json(const RunInfo& run) const {
                  {"type", type(row.pass)},
                  {"gpu_ms", toJson(row.gpu)},
                  {"cpu_ms", toJson(row.cpu)}};
+    if (const auto found = commands_.find(row.pass); found != commands_.end())
+      pass["commands"] = {
+          {"dispatches", found->second.dispatches}, {"indirect_dispatches", found->second.indirectDispatches},
+          {"draws", found->second.draws},           {"renderings", found->second.renderings},
+          {"transfers", found->second.transfers},   {"barriers", found->second.barriers}};
     for (const auto& [step, time] : row.steps)
       pass["steps"].push_back({{"name", step}, {"gpu_ms", toJson(time)}});
     passes.push_back(std::move(pass));

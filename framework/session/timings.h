@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -79,6 +80,7 @@ class Timings {
   std::shared_ptr<const graph::Plan> plan_;
   std::vector<graph::FrameResult> shapes_;
   std::vector<Frame> frames_;
+  std::map<uint32_t, graph::CommandCounts> commands_;  // of the passes of the last frame
 };
 
 }  // namespace fovea::session

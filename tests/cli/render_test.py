@@ -122,8 +122,12 @@ class Timings(CliTest):
         times = [t["frame"][key] for key in ("gpu_ms", "cpu_ms", "wall_ms")]
         self.assertGreaterEqual({p["name"] for p in t["passes"]}, {"gbuffer", "direct", "tonemap"})
         for p in t["passes"]:
-            self.assertEqual(set(p) - {"steps"}, {"name", "type", "gpu_ms", "cpu_ms"})
+            self.assertEqual(set(p) - {"steps"}, {"name", "type", "gpu_ms", "cpu_ms", "commands"})
             times += [p["gpu_ms"], p["cpu_ms"]] + [step["gpu_ms"] for step in p.get("steps", [])]
+        commands = {p["name"]: p["commands"] for p in t["passes"]}
+        self.assertEqual(commands["gbuffer"]["renderings"], 2)  # one a step
+        self.assertEqual(commands["tonemap"], {"dispatches": 0, "indirect_dispatches": 0, "draws": 1, "renderings": 1,
+                                               "transfers": 0, "barriers": 1})
         steps = {p["name"]: [step["name"] for step in p.get("steps", [])] for p in t["passes"]}
         self.assertEqual(steps["gbuffer"], ["visibility", "resolve"])
         self.assertEqual(steps["tonemap"], [])  # a single step is the pass

@@ -62,6 +62,12 @@ class Commands(CliTest):
                     self.assertEqual([name for name in NEVER if name in frame], [])
                     self.assertEqual(frame["vkWaitForFences"], 1)  # for its slot
                     self.assertEqual({**frame, "vkCmdDrawIndexed": 0}, {**last, "vkCmdDrawIndexed": 0})
+                passes = json.loads((self.folder / "timings.json").read_text())["passes"]
+                for kind, functions in (("indirect_dispatches", ["vkCmdDispatchIndirect"]),
+                                        ("renderings", ["vkCmdBeginRendering"])):
+                    # Vertices are moved by dispatches of their own, which belong to no pass.
+                    self.assertEqual(sum(p["commands"][kind] for p in passes if "commands" in p),
+                                     sum(last.get(name, 0) for name in functions))
                 found[graph] = {column: sum(last.get(name, 0) for name in names) for column, names in COLUMNS.items()}
         if os.environ.get("FOVEA_COMMANDS_WRITE"):
             with TABLE.open("w", newline="") as file:

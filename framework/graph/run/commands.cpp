@@ -232,6 +232,7 @@ void Commands::dispatch(uint32_t x, uint32_t y, uint32_t z) {
   if (kernel_.host) return runOnHost(x, y, z);
   flush();
   vkCmdDispatch(context_.cmd_, x, y, z);
+  ++context_.pass_.commands.dispatches;
 }
 
 void Commands::dispatchThreads(uint32_t x, uint32_t y, uint32_t z) {
@@ -250,6 +251,7 @@ void Commands::dispatchIndirect(std::string_view bufferPort, uint64_t offset) {
   if (kernel_.host) return runOnHost(0, 0, 0, &access, offset);
   flush(&access);
   vkCmdDispatchIndirect(context_.cmd_, context_.buffer(bufferPort).handle(), offset);
+  ++context_.pass_.commands.indirectDispatches;
 }
 
 void Commands::drawFullscreen() {
@@ -278,6 +280,7 @@ Instances inLayer(uint32_t layer, Instances all) {
 
 void Commands::draw(uint32_t vertices, uint32_t instances, uint32_t firstInstance) {
   flush();
+  ++context_.pass_.commands.draws;
   const Instances drawn = inLayer(context_.pass_.layer, {instances, firstInstance});
   vkCmdDraw(context_.cmd_, vertices, drawn.count, 0, drawn.first);
 }
@@ -287,6 +290,7 @@ void Commands::drawTriangles(VkBuffer indices, uint32_t first, uint32_t count, u
   for (const KernelConstant& c : kernel_.constants)
     if (c.reflected.name == constant) this->constant(constant, first);
   flush();
+  ++context_.pass_.commands.draws;
   const Instances drawn = inLayer(context_.pass_.layer, {instances, 0});
   if (!context_.device().features().geometryShader)
     return vkCmdDraw(context_.cmd_, 3 * count, drawn.count, 3 * first, drawn.first);
@@ -300,6 +304,7 @@ void Commands::drawIndirect(std::string_view bufferPort, uint64_t offset, uint32
                 "it draws indirectly into layers, for which the device lacks shaderOutputLayer");
   const uint32_t access = accessOf(*context_.pass_.bound, bufferPort);
   flush(&access);
+  ++context_.pass_.commands.draws;
   vkCmdDrawIndirect(context_.cmd_, context_.buffer(bufferPort).handle(), offset, count, stride);
 }
 

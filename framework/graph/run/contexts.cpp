@@ -50,8 +50,10 @@ void PassInstance::beginCommand(VkCommandBuffer cmd, Label of, std::span<const S
   beginRow(cmd, of);
   if (host.bringToDevice(*this, cmd)) tracker.reset();
   host.note(accesses);
-  if (const Dependency wait = tracker.before(accesses, together))
+  if (const Dependency wait = tracker.before(accesses, together)) {
     gpu::memoryBarrier(cmd, wait.srcStage, wait.srcAccess, wait.dstStage, wait.dstAccess);
+    ++commands.barriers;
+  }
 }
 
 // Lavapipe takes a timestamp at the next flush but executes dispatches at once. Without a flush in between (an empty
@@ -194,9 +196,8 @@ static VkRenderingAttachmentInfo attachmentInfo(const PassInstance& pass, const 
   return info;
 }
 
-static void beginRendering(const PassInstance& pass, VkCommandBuffer cmd,
-                           const std::vector<Attachment>& colors, const Attachment* depth, VkRect2D area,
-                           uint32_t layers) {
+static void beginRendering(PassInstance& pass, VkCommandBuffer cmd, const std::vector<Attachment>& colors,
+                           const Attachment* depth, VkRect2D area, uint32_t layers) {
   std::vector<VkRenderingAttachmentInfo> colorInfos;
   for (const Attachment& a : colors) colorInfos.push_back(attachmentInfo(pass, a));
   VkRenderingAttachmentInfo depthInfo{};
@@ -208,6 +209,7 @@ static void beginRendering(const PassInstance& pass, VkCommandBuffer cmd,
   info.pColorAttachments = colorInfos.data();
   info.pDepthAttachment = depth ? &depthInfo : nullptr;
   vkCmdBeginRendering(cmd, &info);
+  ++pass.commands.renderings;
 }
 
 void RecordContext::render(const std::vector<Attachment>& colors, const Attachment* depth,
@@ -280,6 +282,7 @@ static void beginTransfer(PassInstance& pass, VkCommandBuffer cmd, Transfer kind
     label = pass.label(kVerbs[static_cast<size_t>(kind)] + memberPath(port, port.members[first.member]));
   }
   pass.beginCommand(cmd, label, pass.touched);
+  ++pass.commands.transfers;
 }
 
 void RecordContext::fill(std::string_view bufferPort, uint32_t word) {
@@ -330,6 +333,7 @@ void RecordContext::copy(std::string_view imageFrom, std::string_view imageTo) {
 
 void RecordContext::barrier() {
   pass_.tracker.reset();
+  ++pass_.commands.barriers;
   constexpr VkPipelineStageFlags2 kAll = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   gpu::memoryBarrier(cmd_, kAll, VK_ACCESS_2_MEMORY_WRITE_BIT, kAll,
                      VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);

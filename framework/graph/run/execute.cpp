@@ -255,6 +255,7 @@ void Executor::Impl::runPass(FrameSlot& slot, PassInstance& pass, const scene::F
   device.beginLabel(cmd, pass.bound->name.c_str());
   recorded.begin = writeTimestamp(state, cmd);
   pass.begun.assign(1, {kNone, recorded.begin});
+  pass.commands = {};
   pass.tracker.reset();
   if (pass.bound->declaration->kind == PassKind::Host) {
     device.endLabel(cmd);  // a label cannot span two command buffers
@@ -269,6 +270,7 @@ void Executor::Impl::runPass(FrameSlot& slot, PassInstance& pass, const scene::F
   }
   recorded.end = writeTimestamp(state, cmd);
   recorded.steps = pass.begun;
+  recorded.commands = pass.commands;
   recorded.cpuMs = millisecondsSince(start) - waited.value_or(pass.host.waited());
   recorded.hostMs = waited ? recorded.cpuMs : pass.host.milliseconds();
   recorded.hostCounts.assign(pass.host.counters().begin(), pass.host.counters().end());
@@ -386,8 +388,10 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs, bool observe)
   uint32_t position = 0;
   for (const Level& level : e.plan->levels) {
     e.emitBarriers(level.before);
-    for (size_t i = 0; i < level.passes.size(); ++i, ++position)
+    for (size_t i = 0; i < level.passes.size(); ++i, ++position) {
       e.runPass(slot, *e.passes[position], frame, slot.passes[position]);
+      if (i == 0 && !level.before.empty()) ++slot.passes[position].commands.barriers;
+    }
   }
   e.emitBarriers(e.plan->end);
   writeTimestamp(e.state, e.cmd);

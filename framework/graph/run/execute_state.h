@@ -154,6 +154,7 @@ struct PassInstance {
   std::vector<StepAccess> touched;        // by the command under construction
   std::span<const Kernel> renderKernels;  // with which the current rendering may draw
   bool rendering = false;
+  CommandCounts commands;             // of this frame
   uint32_t layer = kNone;             // that is rendered, where the layers of a rendering take turns
   std::vector<double> counterValues;  // set by the CPU
   std::vector<bool> counterSet;

@@ -112,7 +112,7 @@ FrameResult FrameSlot::result(std::span<const double> timestamps, const PassInst
     const RecordedPass& recorded = passes[i];
     const double gpuMs = milliseconds(recorded.begin, recorded.end) - recorded.hostMs;
     PassTiming& timing = result.passes.emplace_back(
-        PassTiming{pass.index, std::max(gpuMs, 0.0), recorded.cpuMs, std::vector<StepTiming>()});
+        PassTiming{pass.index, std::max(gpuMs, 0.0), recorded.cpuMs, {}, recorded.commands});
     for (size_t s = 0; s < recorded.steps.size(); ++s) {
       const StepBegin& step = recorded.steps[s];
       if (step.label == kNone) continue;  // the pass recorded nothing

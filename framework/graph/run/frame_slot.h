@@ -25,6 +25,7 @@ struct RecordedPass {
   double hostMs = 0;             // the part of cpuMs during which the device waits in the middle of the pass
   uint32_t begin = 0, end = 0;   // indices of the timestamps around the pass
   std::vector<StepBegin> steps;  // in order; a step may begin more than once
+  CommandCounts commands;
   std::vector<double> counterValues;
   std::vector<bool> counterSet;
   std::vector<uint64_t> hostCounts;  // by steps that ran on the host

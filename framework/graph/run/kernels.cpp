@@ -51,6 +51,8 @@ const char* kindName(gpu::BindingKind kind) {
       return "a storage image";
     case gpu::BindingKind::Sampler:
       return "a sampler";
+    case gpu::BindingKind::AccelerationStructure:
+      return "an acceleration structure";
   }
   return "unknown";
 }

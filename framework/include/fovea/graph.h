@@ -36,10 +36,17 @@ struct StepTiming {
   double gpuMs = 0;  // in all its runs together, including the wait for what it depends on
 };
 
+// What a pass recorded for the device. Barriers include the one before the level of passes that it is the first of.
+struct CommandCounts {
+  uint32_t dispatches = 0, indirectDispatches = 0, draws = 0, renderings = 0, transfers = 0, barriers = 0;
+  bool operator==(const CommandCounts&) const = default;
+};
+
 struct PassTiming {
   uint32_t pass = 0;  // index into the passes of the graph, in the order of the file; see Session::passName
   double gpuMs = 0, cpuMs = 0;
   std::vector<StepTiming> steps;  // those that ran, in the order of their first run; none for a host pass
+  CommandCounts commands = {};
 };
 
 // What is read back. Light is in the units of the scene, such as W/(sr m^2), as 32-bit floats whatever format passes

@@ -310,7 +310,18 @@ nlohmann::json describeTimes(const graph::FrameResult& frame) {
   for (const graph::PassTiming& pass : frame.passes) {
     Json steps = Json::array();
     for (const graph::StepTiming& step : pass.steps) steps.push_back({step.name, step.gpuMs});
-    passes.push_back({{"pass", pass.pass}, {"gpu", pass.gpuMs}, {"cpu", pass.cpuMs}, {"steps", steps}});
+    const graph::CommandCounts& c = pass.commands;
+    passes.push_back({{"pass", pass.pass},
+                      {"gpu", pass.gpuMs},
+                      {"cpu", pass.cpuMs},
+                      {"steps", steps},
+                      {"commands",
+                       {{"dispatches", c.dispatches},
+                        {"indirect dispatches", c.indirectDispatches},
+                        {"draws", c.draws},
+                        {"renderings", c.renderings},
+                        {"transfers", c.transfers},
+                        {"barriers", c.barriers}}}});
   }
   Json counters = Json::array();
   for (const auto& [name, value] : frame.counters) counters.push_back({name, value});

@@ -46,7 +46,7 @@ function passRow(index) {
   const path = svg("path");
   const time = element("td", { class: "number" });
   const delta = element("td", { class: "number delta" });
-  const name = element("td", { title: `${pass.type}: ${pass.doc}` }, pass.name);
+  const name = element("td", {}, pass.name);
   const bar = element("td", { class: "bar" });
   bar.append(svg("svg", { viewBox: "0 0 100 20", preserveAspectRatio: "none", "aria-hidden": "true" }, path));
   const row = element("tr", { "data-pass": pass.name, tabindex: 0, "aria-label": `${pass.name}: show its picture` },
@@ -66,7 +66,14 @@ function passRow(index) {
     lock();
     toggleSteps(index);
   });
-  return { row, path, time, delta, steps: new Map() };
+  return { row, name, path, time, delta, steps: new Map() };
+}
+
+// What the pass is, and what it recorded in the last frame: "dispatches 4, barriers 3".
+function explain(cells, timing) {
+  const pass = store.state.graph.passes[timing.pass];
+  const commands = Object.entries(timing.commands).filter(([, count]) => count > 0).map((entry) => entry.join(" "));
+  cells.name.title = [`${pass.type}: ${pass.doc}`, commands.join(", ")].join("\n").trim();
 }
 
 function toggleSteps(index) {
@@ -157,6 +164,7 @@ function update(tick) {
     cells.path.setAttribute("d", sparkline(values, usual(values)));
     cells.time.textContent = now.toFixed(now < 10 ? 2 : 1);
     cells.time.title = store.state.graph.passes[timing.pass].host ? "on the CPU" : "";
+    explain(cells, timing);
     showDelta(cells.delta, timing.pass, median(values));
     showSteps(cells, timing.pass, timing);
   }
