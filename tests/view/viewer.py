@@ -162,10 +162,12 @@ class ViewTest(unittest.TestCase):
         self.find("#stage").send_keys(keys)
 
     def choose(self, selector, value):
-        """Sets a control and tells the page."""
-        self.script("arguments[0].value = arguments[1];"
-                    "arguments[0].dispatchEvent(new Event('input', {bubbles: true}));"
-                    "arguments[0].dispatchEvent(new Event('change', {bubbles: true}));", self.find(selector), value)
+        """Sets a control and tells the page, in one step, as the page may replace the control at any time."""
+        self.find(selector)
+        self.script("const control = document.querySelector(arguments[0]);"
+                    "control.value = arguments[1];"
+                    "control.dispatchEvent(new Event('input', {bubbles: true}));"
+                    "control.dispatchEvent(new Event('change', {bubbles: true}));", selector, value)
 
     def canvas(self):
         """The pixels of the canvas as a list of bytes, RGBA."""
