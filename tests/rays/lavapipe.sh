@@ -35,7 +35,8 @@ for file in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
   sed -n "s/^\(deb .*[ ]\)$codename\([ ].*\)$/\1$codename-backports\2/p" "$file" >>"$work/sources/backports.list"
 done
 options=(-o Dir::Etc::SourceList=/nonexistent -o Dir::Etc::SourceParts="$work/sources" -o Dir::State::Lists="$work/lists"
-         -o Dir::Cache="$work" -o APT::Sandbox::User=root -o Debug::NoLocking=1)
+         -o Dir::Cache="$work" -o APT::Sandbox::User=root -o Debug::NoLocking=1
+         -o Acquire::http::Timeout=20 -o Acquire::https::Timeout=20)
 apt-get "${options[@]}" update >"$work/log" 2>&1 || fail "the package sources cannot be read"
 (cd "$work" && apt-get "${options[@]}" download mesa-vulkan-drivers >>log 2>&1) ||
   fail "the package sources have no mesa-vulkan-drivers among the backports"
@@ -43,8 +44,10 @@ dpkg -x "$work"/mesa-vulkan-drivers_*.deb "$work/root"
 library=$(cd "$work/root" && find . -name libvulkan_lvp.so)
 [ -n "$library" ] || fail "the package holds no lavapipe"
 mkdir -p "$cache"
-cp "$work/root/$library" "$cache/libvulkan_lvp.so"
+# Both appear as a whole, as another process may be here as well.
+cp "$work/root/$library" "$cache/libvulkan_lvp.so.$$"
+mv "$cache/libvulkan_lvp.so.$$" "$cache/libvulkan_lvp.so"
 printf '{"file_format_version": "1.0.1", "ICD": {"library_path": "%s", "api_version": "1.4.305"}}\n' \
-  "$cache/libvulkan_lvp.so" >"$description.new"
-mv "$description.new" "$description"
+  "$cache/libvulkan_lvp.so" >"$description.$$"
+mv "$description.$$" "$description"
 echo "$description"
