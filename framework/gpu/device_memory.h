@@ -12,8 +12,8 @@ namespace fovea::gpu {
 // The memory of a device, counted in bytes. May be used by several threads at once.
 class DeviceMemory {
  public:
-  // limit: of the bytes that are allocated at a time; 0 for the size of each heap. addresses: whether the addresses of
-  // buffers may be asked for.
+  // limit: of the bytes that are allocated at a time; 0 for the size of each heap. addresses: whether
+  // Vulkan may be asked for the addresses of buffers in this memory.
   DeviceMemory(VkPhysicalDevice physical, VkDevice device, uint64_t maxAllocation, uint64_t limit,
                bool addresses);
 

@@ -6,8 +6,8 @@
 SHARED_BEGIN(fovea::passes::atlas)
 
 SHARED_CONSTANT uint kBatch = 32u;  // VPLs that share one reading of triangles
-SHARED_CONSTANT uint kRound =
-    kBatch * 16u;                       // VPLs that share dispatches; their records are in a uniform buffer
+// VPLs that share dispatches; their records are in a uniform buffer.
+SHARED_CONSTANT uint kRound = kBatch * 16u;
 SHARED_CONSTANT uint kMovers = 4u;      // spheres around objects that may have changed a map (changed.comp)
 SHARED_CONSTANT uint kDrawGroup = 64u;  // invocations per work group of draw.comp
 SHARED_CONSTANT uint kTriangles = 4u;   // per invocation of draw.comp

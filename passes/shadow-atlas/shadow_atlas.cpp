@@ -36,8 +36,8 @@ using namespace graph;
 using namespace atlas;
 
 constexpr uint32_t kRangeTriangles = 1 << 19;  // per step: bounds the lists to 128 MiB
-// Eight invocations of large.comp draw up to kBatch pairs, so these are 4,096 blocks of about 10 turns each, which
-// stays below the limit of 65,535 turns of a loop.
+// Texels of a map in one slice of the work of large.comp. Eight invocations draw a slice in up to kBatch maps, which are
+// 4,096 blocks of about 10 turns of a loop each. Some devices allow no more than 65,535 turns.
 constexpr uint32_t kSliceTexels = (1 << 18) / kBatch;
 
 class ShadowAtlas : public Pass {

@@ -30,8 +30,8 @@ Bvh buildBvh(const Geometry& geometry, TriangleRange range = {});
 // An order in which the boxes of a tree can be computed again after its triangles have moved: in rounds, of which each
 // works on many parts of the tree at once, and on the nodes of a part one after the other.
 struct RefitOrder {
-  std::vector<uint32_t>
-      nodes;  // part by part; the children of a node precede it or belong to an earlier round
+  // Part by part. The children of a node come before it in its part, or belong to an earlier round.
+  std::vector<uint32_t> nodes;
   std::vector<uint32_t> parts;   // first element of `nodes` of each part, then the number of nodes
   std::vector<uint32_t> rounds;  // first part of each round, then the number of parts
 };
