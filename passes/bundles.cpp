@@ -1,9 +1,11 @@
 #include "passes/bundles.h"
 
-#include "passes/materials.h"
+#include <algorithm>
 
 #include "fovea/error.h"
+#include "passes/materials.h"
 #include "shaders/records/eye_paths.h"
+#include "shaders/records/scene.h"
 #include "shaders/records/shadow.h"
 #include "shaders/records/voxel.h"
 #include "shaders/records/vpl.h"
@@ -52,8 +54,11 @@ ResourceSpec changeBuffer() { return buffer("LightChange", kTexel); }
 std::vector<MemberSpec> gbufferOutput() {
   const SizeExpr full = fullMaterials();
   return {
-      member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::ColorAttachment,
-             "xyz: world space, m; w: distance from the eye, m, 0 in the background"),
+      member("distance", image2D(VK_FORMAT_R32_SFLOAT), Usage::ColorAttachment,
+             "distance from the eye to the surface, m, along the ray that `camera` gives for the pixel's "
+             "centre (surfaceAt() in shaders/screen/gbuffer.glsl); background 0"),
+      member("camera", buffer("PixelRays", sizeof(scene::PixelRays)), Usage::StorageWrite,
+             "the eye and the rays through the pixels"),
       member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
              "xyz: unit shading normal, on the side of the face towards the eye; a: with full materials, the "
              "reflectance of the surface at grazing incidence, negative where the pixel may show another "
@@ -79,7 +84,13 @@ std::vector<MemberSpec> gbufferOutput() {
              "square root of GGX's alpha); otherwise one undefined texel")};
 }
 std::vector<MemberSpec> gbufferMembers(Usage usage, std::initializer_list<std::string_view> names) {
-  return read(gbufferOutput(), names, usage);
+  const std::vector<MemberSpec> output = gbufferOutput();
+  std::vector<MemberSpec> members = read(output, names, usage);
+  for (MemberSpec& m : members)
+    if (m.name == "distance") m.usage = Usage::StorageRead;
+  if (std::ranges::find(names, "distance") != names.end())
+    members.push_back(read(output, "camera", Usage::StorageRead));
+  return members;
 }
 
 std::vector<MemberSpec> voxelOutput(const SizeExpr& r, const SizeExpr& room) {

@@ -30,13 +30,13 @@ A shader includes a header by its path in this folder. The extensions that this 
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;  // port `gbuffer`, member `position`
-layout(rgba16f) uniform writeonly image2D distances;       // port `distances`
+layout(rgba16f) uniform readonly image2D gbufferAlbedo;  // port `gbuffer`, member `albedo`
+layout(rgba16f) uniform writeonly image2D darker;        // port `darker`
 
 void main() {{
   ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(p, imageSize(distances)))) return;
-  imageStore(distances, p, vec4(distance(view.eye, imageLoad(gbufferPosition, p).xyz)));
+  if (any(greaterThanEqual(p, imageSize(darker)))) return;
+  imageStore(darker, p, imageLoad(gbufferAlbedo, p) / (1.0 + float(frame.index)));
 }}
 ```
 
@@ -86,11 +86,12 @@ vec3 unshadowed(vec3 position, vec3 normal, vec3 reflectance) {
 """),
     "screen": ("The screen", "Pixels of this frame and of the one before, the surfaces that they show, and their colours.",
                """\
-#include "scene/scene.glsl"
-#include "screen/pixel_ray.glsl"
+#include "screen/gbuffer.glsl"
 
-// Where the eye sees a surface at a distance from it, world space, m.
-vec3 seenAt(ivec2 pixel, float distance_) { return view.eye + distance_ * normalize(pixelRay(vec2(pixel) + 0.5)); }
+SURFACES(gbuffer, surfaceAt)  // port `gbuffer`, members `distance` and `camera`
+
+// How far the surfaces of two neighbouring pixels are apart, m.
+float gapAt(ivec2 pixel) { return distance(surfaceAt(pixel).xyz, surfaceAt(pixel + ivec2(1, 0)).xyz); }
 """),
     "rays": ("Rays", "Rays through the triangles of the scene, and the light that they find, for passes that declare "
              "`rays`.", """\

@@ -14,11 +14,11 @@
 
 // Images rather than textures, which cost several times as much on a CPU device.
 layout(rgba16f) uniform readonly image2D radiance;
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(r32ui) uniform readonly uimage2D gbufferId;
 layout(r32ui) uniform readonly uimage2D gbufferTriangle;
-layout(rgba32f) uniform readonly image2D previousPosition;
+SURFACES(previous, previousAt)
 layout(r32ui) uniform readonly uimage2D previousId;
 layout(r32ui) uniform readonly uimage2D origin;
 layout(rgba16f) uniform readonly image2D history;
@@ -83,7 +83,7 @@ Around around(ivec2 p, ivec2 size, bool veiled) {
     vec3 colour = toYCoCg(compress(finiteLight(q), veiled ? 0.0 : 1.0));
     a.mean += colour;
     a.deviation += colour * colour;
-    vec4 position = imageLoad(gbufferPosition, q);
+    vec4 position = surfaceAt(q);
     bool surface = position.w > 0.0, nearer = surface && (a.position.w == 0.0 || position.w < a.position.w);
     a.nearest = nearer ? q : a.nearest;
     a.position = nearer ? position : a.position;
@@ -94,7 +94,7 @@ Around around(ivec2 p, ivec2 size, bool veiled) {
   a.deviation = sqrt(max(a.deviation / float(a.count) - a.mean * a.mean, 0.0));
   if (veiled) {
     a.nearest = p;
-    a.position = imageLoad(gbufferPosition, p);
+    a.position = surfaceAt(p);
   }
   return a;
 }
@@ -134,7 +134,7 @@ bool hasLeft(ivec2 p, ivec2 from, Around a, ivec2 size) {
     uint id = imageLoad(previousId, q).r;
     bool here = false;
     for (int k = 0; k < a.count; ++k) here = here || a.id[k] == id;
-    if (!here) left = left || !canBeHere(id, imageLoad(previousPosition, q), p, vec2(size));
+    if (!here) left = left || !canBeHere(id, previousAt(q), p, vec2(size));
   }
   return left;
 }

@@ -8,15 +8,16 @@
 #include "sampling/diffuse_bounce.glsl"
 #include "sampling/random.glsl"
 #include "sampling/fovea.glsl"
+#include "screen/gbuffer.glsl"
 #include "voxels/voxel_trace.glsl"
 
 layout(local_size_x = 64) in;
 
-uniform texture2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 uniform texture2D gbufferNormal;
 uniform texture2D gbufferFace;
 #if TWO_EYES
-uniform texture2D gbuffer2Position;
+SURFACES(gbuffer2, secondSurfaceAt)
 uniform texture2D gbuffer2Normal;
 uniform texture2D gbuffer2Face;
 #endif
@@ -49,11 +50,12 @@ struct Seen {  // the surface shown by a pixel
   bool background;
 };
 
-Seen seenAt(texture2D position, texture2D normal, texture2D face, vec2 gaze, uint stream, uint from) {
-  ivec2 size = textureSize(position, 0);
-  ivec2 pixel = regionSample(from, makeFovea(gaze, vec2(size), foveaRadius), size, stream);
-  vec4 place = texelFetch(position, pixel, 0);
+Seen seenAt(ivec2 pixel, vec4 place, texture2D normal, texture2D face) {
   return Seen(place.xyz, texelFetch(normal, pixel, 0).xyz, octDecode(texelFetch(face, pixel, 0).xy), !(place.w > 0.0));
+}
+
+ivec2 pixelOf(ivec2 size, vec2 gaze, uint stream, uint from) {
+  return regionSample(from, makeFovea(gaze, vec2(size), foveaRadius), size, stream);
 }
 
 #if TRACED
@@ -116,14 +118,13 @@ void main() {
   }
 #endif
   uint number, from = regionOf(region, imageShare64ths, TWO_EYES != 0 ? i / 2u : i, number);
+  ivec2 pixel = pixelOf(imageSize(gbufferDistance), view.gaze, stream, from);
+  Seen seen = seenAt(pixel, surfaceAt(pixel), gbufferNormal, gbufferFace);
 #if TWO_EYES
-  Seen seen;
-  if ((i & 1u) == 0u)
-    seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze, stream, from);
-  else
-    seen = seenAt(gbuffer2Position, gbuffer2Normal, gbuffer2Face, secondGaze, stream, from);
-#else
-  Seen seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze, stream, from);
+  if ((i & 1u) == 1u) {
+    pixel = pixelOf(imageSize(gbuffer2Distance), secondGaze, stream, from);
+    seen = seenAt(pixel, secondSurfaceAt(pixel), gbuffer2Normal, gbuffer2Face);
+  }
 #endif
   if (seen.background) {
     atomicAdd(counters[kBackground], 1u);

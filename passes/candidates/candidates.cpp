@@ -15,9 +15,9 @@ class Candidates : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("candidates", "voxels hit by one diffuse bounce from random pixels of the fovea");
     d.view();
-    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"position", "normal", "face"}),
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"distance", "normal", "face"}),
             "surfaces seen by the eye");
-    d.input("gbuffer2", "gbuffer", gbufferMembers(Usage::Sampled, {"position", "normal", "face"}),
+    d.input("gbuffer2", "gbuffer", gbufferMembers(Usage::Sampled, {"distance", "normal", "face"}),
             "surfaces seen by a second eye, in view `second_view`; every other attempt starts there")
         .makeOptional();
     d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}),

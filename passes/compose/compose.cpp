@@ -17,7 +17,7 @@ class Compose : public Pass {
         PassKind::Graphics);
     d.view();
     d.input("gbuffer", "gbuffer",
-            gbufferMembers(Usage::StorageRead, {"position", "normal", "albedo", "specular"}),
+            gbufferMembers(Usage::StorageRead, {"distance", "normal", "albedo", "specular"}),
             "surfaces seen by the eye");
     const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT);
     d.input("irradiance", color, Usage::StorageRead,

@@ -3,10 +3,11 @@
 // a mean has none.
 #include "sampling/random.glsl"
 #include "scene/scene.glsl"
+#include "screen/gbuffer.glsl"
 #define CONE_GATHER
 #include "voxels/cone.glsl"
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(location = 0) out vec4 irradiance;
 
@@ -17,7 +18,7 @@ const uint kGoldenRatio = 2654435769u;  // step of a sequence, in 2^-32
 
 void main() {
   uvec2 p = uvec2(gl_FragCoord.xy);
-  vec4 position = imageLoad(gbufferPosition, ivec2(p));
+  vec4 position = surfaceAt(ivec2(p));
   irradiance = vec4(0.0);
   if (position.w <= 0.0) return;
   vec3 normal = normalize(imageLoad(gbufferNormal, ivec2(p)).xyz);

@@ -1,8 +1,9 @@
 // Marks the pixels over whose tangent plane a surface close by rises, so that it may hide light from them.
 #include "scene/scene.glsl"
 #include "sampling/fovea.glsl"
+#include "screen/gbuffer.glsl"
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 uniform samplerBuffer spread;  // x: area, m^2
 layout(location = 0) out uvec2 contacts;
@@ -32,17 +33,17 @@ bool inContact(ivec2 p, ivec2 size, vec4 here, vec3 normal) {
   for (int distance_ = 1, first = 0; distance_ <= widest && !found; distance_ *= 2, first ^= 4)
     for (int k = 0; k < 4; ++k) {
       ivec2 q = clamp(p + distance_ * kAround[first + k], ivec2(0), size - 1);
-      found = found || rises(imageLoad(gbufferPosition, q), here, normal, most);
+      found = found || rises(surfaceAt(q), here, normal, most);
     }
   return found;
 }
 
 void main() {
-  ivec2 p = ivec2(gl_FragCoord.xy), size = imageSize(gbufferPosition);
+  ivec2 p = ivec2(gl_FragCoord.xy), size = imageSize(gbufferDistance);
   Fovea fovea = makeFovea(view.gaze, vec2(size), foveaRadius);
   contacts = uvec2(0);
   if (distance(gl_FragCoord.xy, fovea.centre) > fovea.radius) return;
-  vec4 here = imageLoad(gbufferPosition, p);
+  vec4 here = surfaceAt(p);
   vec3 normal = normalize(imageLoad(gbufferNormal, p).xyz);
   if (here.w > 0.0 && inContact(p, size, here, normal))
     contacts = uvec2(floatBitsToUint(here.w), packSnorm2x16(octEncode(normal)));

@@ -45,9 +45,9 @@ class Deferred : public Pass {
                       PassKind::ComputeAndGraphics);
     d.recorded();
     d.view();
-    const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
+    const SizeExpr width = widthOf("gbuffer.distance"), height = heightOf("gbuffer.distance");
     d.input("gbuffer", "gbuffer",
-            gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo", "specular"}),
+            gbufferMembers(Usage::StorageRead, {"distance", "normal", "face", "albedo", "specular"}),
             "surfaces seen by the eye");
     d.input("vpls", vplBuffer(), Usage::Uniform, "light sources; empty slots have zero intensity");
     d.input(
@@ -256,7 +256,7 @@ class Deferred : public Pass {
     if (!ctx.has("base"))
       throw Error(ExitCode::BadInput, "`shade` leaves pixels out, but nothing is wired to `base`",
                   "wire reproject.irradiance to base");
-    const VkExtent3D size = ctx.extent("gbuffer.position"), mask = ctx.extent("shade.mask"),
+    const VkExtent3D size = ctx.extent("gbuffer.distance"), mask = ctx.extent("shade.mask"),
                      base = ctx.extent("base");
     const uint64_t blocks =
         uint64_t((size.width + interleave - 1) / interleave) * ((size.height + interleave - 1) / interleave);

@@ -27,11 +27,13 @@
 // incomplete set of subsets.
 #include "device/texels.glsl"
 #include "screen/same_surface.glsl"
+#include "screen/gbuffer.glsl"
 #include "deferred/records.h"
 #if MASKED
 #include "deferred/blocks.glsl"
 #endif
 #include "deferred/samples.glsl"
+
 // Vertically adjacent pixels that an invocation filters together, as their windows overlap.
 #if !EDGES
 const int kPixels = 4;
@@ -52,7 +54,7 @@ layout(local_size_x = kTileWidth, local_size_y = kTileHeight / kPixels) in;
 
 // Images rather than textures, because on lavapipe a load from a texture costs several times as much, and loads are
 // most of the work.
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(rgba16f) uniform writeonly image2D irradiance;
 layout(std430) buffer Counters { uint counters[]; };  // incomplete, -, shaded
@@ -150,7 +152,7 @@ uvec2 subsetBit(ivec2 d) {
 
 Centre centreAt(ivec2 p, ivec2 size) {
   ivec2 inside = min(p, size - 1);
-  vec4 position = imageLoad(gbufferPosition, inside);
+  vec4 position = surfaceAt(inside);
   bool surface = p == inside && position.w > 0.0;
   Centre c;
   c.position = position.xyz;
@@ -171,7 +173,7 @@ Centre centreAt(ivec2 p, ivec2 size) {
 // Every sample of the windows is loaded once and offered to all centres whose window holds it.
 void filterWindows(inout Centre centres[kPixels], ivec2 first) {
   const int kBefore = INTERLEAVE / 2;
-  ivec2 size = imageSize(partial), pixels = imageSize(gbufferPosition);
+  ivec2 size = imageSize(partial), pixels = imageSize(gbufferDistance);
   for (int dx = -kBefore; dx < INTERLEAVE - kBefore; ++dx) {
     for (int row = -kBefore; row < INTERLEAVE - kBefore + (kPixels - 1) / SCALE; ++row) {
       ivec2 q = first / SCALE + ivec2(dx, row);
@@ -180,7 +182,7 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first) {
       q += INTERLEAVE * (ivec2(lessThan(q, ivec2(0))) - ivec2(greaterThanEqual(q, size)));
 #endif
       ivec2 inside = clamp(q, ivec2(0), size - 1), at = samplePixel(inside, pixels);
-      vec4 position = imageLoad(gbufferPosition, at);
+      vec4 position = surfaceAt(at);
       if (q != inside) position.w = 0.0;
       vec3 normal = imageLoad(gbufferNormal, at).xyz;
       Light value = loadLight(inside);
@@ -226,8 +228,8 @@ void addSample(inout Weighted sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float
   ivec2 q = p + d;
   if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size))) return;
   if (!isShaded(q)) return;
-  ivec2 at = samplePixel(q, imageSize(gbufferPosition));
-  if (!sameSurface(c, imageLoad(gbufferPosition, at), imageLoad(gbufferNormal, at).xyz, plane, least)) return;
+  ivec2 at = samplePixel(q, imageSize(gbufferDistance));
+  if (!sameSurface(c, surfaceAt(at), imageLoad(gbufferNormal, at).xyz, plane, least)) return;
   float w = 1.0 / float(max(d.x * d.x + d.y * d.y, 1));
   add(sum, loadLight(q) * w, w);
 }
@@ -300,7 +302,7 @@ void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
                     all(lessThan(d, ivec2(INTERLEAVE - INTERLEAVE / 2)));
     uvec2 bit = subsetBit((d + BLOCK) % INTERLEAVE);
     bool wanted = c.outside.a > 0.0 && !inWindow && all(lessThan(q, size)) && (c.missing & bit) != uvec2(0u);
-    if (wanted && sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, c.plane, filterCos)) {
+    if (wanted && sameSurface(c, surfaceAt(q), imageLoad(gbufferNormal, q).xyz, c.plane, filterCos)) {
       c.sum += loadLight(q);
       ++c.found;
       c.missing &= ~bit;
@@ -386,7 +388,7 @@ ivec2 itemAt(int k, ivec2 size) {
 #endif
 
 void main() {
-  ivec2 size = imageSize(gbufferPosition);
+  ivec2 size = imageSize(gbufferDistance);
   uint surfaces = 0u, found = 0u;
   for (int k = 0; k < kItems; ++k) {
     ivec2 first = itemAt(k, size);  // past the end of the list: `size`
@@ -442,7 +444,7 @@ uint resolve(ivec2 first, ivec2 size) {
 }
 
 void main() {
-  ivec2 size = imageSize(gbufferPosition);
+  ivec2 size = imageSize(gbufferDistance);
   ivec2 corner = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels));
   // Groups lie in one of the two parts as a whole.
   if ((all(greaterThanEqual(corner, fine.xy)) && all(lessThan(corner, fine.zw))) != (SCALE == 1)) return;

@@ -13,6 +13,7 @@
 #include "vpls/vpl_gloss.glsl"
 #endif
 #include "scene/scene.glsl"
+#include "screen/gbuffer.glsl"
 #include "vpls/vpl.glsl"
 #include "vpls/paraboloid.glsl"
 #include "vpls/vpl_shadow.glsl"
@@ -30,7 +31,7 @@ const int kPixels = 8;
 layout(local_size_x = kTileWidth, local_size_y = kTileHeight / kPixels) in;
 #endif
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(std140) uniform Vpls { Vpl list[PAGE_VPLS]; } vpls;
 #if SHADOWED
@@ -245,12 +246,12 @@ void gather(inout Receiver receivers[kPixels], Block block, uint subset, bool gl
 
 void main() {
   uvec2 subset2 = subsetOfGroup();
-  ivec2 size = imageSize(partial), pixels = imageSize(gbufferPosition);
+  ivec2 size = imageSize(partial), pixels = imageSize(gbufferDistance);
   Receiver receivers[kPixels];
   bool valid[kPixels];
   for (int k = 0; k < kPixels; ++k) {
     ivec2 at = sampleAt(k, size), p = samplePixel(at, pixels);
-    vec4 position = imageLoad(gbufferPosition, p);
+    vec4 position = surfaceAt(p);
     valid[k] = position.w > 0.0 && all(lessThan(at, size));
     receivers[k].position = position.xyz;
     vec4 normal = imageLoad(gbufferNormal, p);

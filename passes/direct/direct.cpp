@@ -25,13 +25,13 @@ class Direct : public Pass {
     d.view();
     d.input(
         "gbuffer", "gbuffer",
-        gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo", "emission", "specular"}),
+        gbufferMembers(Usage::StorageRead, {"distance", "normal", "face", "albedo", "emission", "specular"}),
         "surfaces seen by the eye");
     d.input("maps", "shadow-maps", shadowMapMembers(), "shadow maps of the lights");
     d.output(
         "direct",
-        ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"),
-                        heightOf("gbuffer.position"))),
+        ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.distance"),
+                        heightOf("gbuffer.distance"))),
         Usage::ColorAttachment,
         "rgb: radiance towards the eye, W/(sr m^2), in the background that of the environment; a: 0 where "
         "the edge of a shadow lies between texels of a map, else 1");

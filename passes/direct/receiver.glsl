@@ -4,9 +4,10 @@
 #include "materials/gloss.glsl"
 #endif
 #include "scene/scene.glsl"
+#include "screen/gbuffer.glsl"
 
 // Images rather than textures, because on lavapipe a load from a texture costs several times as much.
-IMAGE(rgba32f, readonly, image2D, gbufferPosition);
+SURFACES(gbuffer, surfaceAt)
 IMAGE(rgba16f, readonly, image2D, gbufferNormal);
 IMAGE(rg16_snorm, readonly, image2D, gbufferFace);
 IMAGE(rgba16f, readonly, image2D, gbufferAlbedo);
@@ -28,7 +29,7 @@ Receiver receiverAt(ivec2 p) {
   Receiver r;
   vec4 normal = imageLoad(gbufferNormal, p), albedo = imageLoad(gbufferAlbedo, p),
        emission = imageLoad(gbufferEmission, p);
-  r.place = imageLoad(gbufferPosition, p);
+  r.place = surfaceAt(p);
   r.normal = vec3(normal);
   r.face = octDecode(vec2(imageLoad(gbufferFace, p)));
   r.albedo = vec3(albedo);

@@ -53,7 +53,7 @@ class GBuffer : public Pass {
         "cull", choice("auto", {"auto", "none"}),
         "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
     d.counter("triangles", "triangles drawn, which are those that may be in view");
-    std::vector<std::string> images = {"gbuffer.position", "gbuffer.normal",   "gbuffer.face",
+    std::vector<std::string> images = {"gbuffer.distance", "gbuffer.normal",   "gbuffer.face",
                                        "gbuffer.albedo",   "gbuffer.emission", "gbuffer.id"};
     for (const bool textured : {false, true})
       d.fullscreen("gbuffer/resolve.frag", images)

@@ -14,7 +14,8 @@ uniform utexture2D gbufferTriangle;
 #if TINT
 uniform texture2D tint;
 #endif
-layout(location = 0) out vec4 gbufferPosition;
+VALUE(writeonly, PixelRays, gbufferCamera);
+layout(location = 0) out float gbufferDistance;
 layout(location = 1) out vec4 gbufferNormal;
 layout(location = 2) out vec2 gbufferFace;
 layout(location = 3) out vec4 gbufferAlbedo;
@@ -30,15 +31,21 @@ const float kSolid = 1.0 - 0.5 / 255.0;  // with this alpha, what is BLEND lets 
 const uint kNothing = 0xffffffffu;
 const float kMaxHalf = 65504.0;
 
-// Weights of b and c where the line through the eye meets the plane of a, b, c (Moeller and Trumbore 1997). The
-// rasteriser accepts some pixels whose centre just misses the triangle; they get the nearest point inside.
+const float kBeside = 1e-3;  // relative; by how much what is just beside a triangle may be nearer or farther
+
+// Weights of b and c where the line through the eye meets the plane of a, b, c (Moeller and Trumbore 1997).
 vec2 barycentrics(vec3 ray, vec3 a, vec3 edgeB, vec3 edgeC) {
   vec3 p = cross(ray, edgeC);
   float determinant = dot(edgeB, p);
   if (determinant == 0.0) return vec2(1.0 / 3.0);
   vec3 s = view.eye - a;
-  vec2 w = max(vec2(dot(s, p), dot(ray, cross(s, edgeB))) / determinant, 0.0);
-  return w / max(w.x + w.y, 1.0);
+  return vec2(dot(s, p), dot(ray, cross(s, edgeB))) / determinant;
+}
+
+// Of the nearest point inside the triangle: the rasteriser accepts some pixels whose centre just misses it.
+vec2 inside(vec2 weights) {
+  weights = max(weights, 0.0);
+  return weights / max(weights.x + weights.y, 1.0);
 }
 
 void main() {
@@ -47,7 +54,7 @@ void main() {
   bool background = index == kNothing;  // computed as if it were triangle 0: a CPU device runs both sides of a branch
   uvec4 triangle = sceneTriangle(background ? 0u : index);
   vec3 a = scenePosition(triangle.x), edgeB = scenePosition(triangle.y) - a, edgeC = scenePosition(triangle.z) - a;
-  vec2 w = barycentrics(pixelRay(p), a, edgeB, edgeC);
+  vec2 onPlane = barycentrics(pixelRay(p), a, edgeB, edgeC), w = inside(onPlane);
   vec3 weights = vec3(1.0 - w.x - w.y, w);
   vec3 position = a + w.x * edgeB + w.y * edgeC;
 
@@ -104,7 +111,10 @@ void main() {
 #if TINT
   if (background) emission *= seenThrough;
 #endif
-  gbufferPosition = background ? vec4(0.0) : vec4(position, distance(position, view.eye));
+  if (p == ivec2(0)) gbufferCamera.value = view.rays;
+  // Along the ray, up to the plane: what is stored is a point of the ray.
+  float nearest = distance(position, view.eye), met = distance(a + onPlane.x * edgeB + onPlane.y * edgeC, view.eye);
+  gbufferDistance = background ? 0.0 : clamp(met, (1.0 - kBeside) * nearest, (1.0 + kBeside) * nearest);
   gbufferNormal = background ? vec4(vec3(0.0), min(alphas.x, 0.0)) : vec4(normal, alphas.x);
   gbufferFace = background ? vec2(0.0) : octEncode(face);
 #ifdef WITHOUT_VK_FORMAT_R16G16_SNORM

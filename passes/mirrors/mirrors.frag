@@ -2,7 +2,7 @@
 #include "screen/blocks.glsl"
 #include "materials/gloss.glsl"
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(r32f) uniform readonly image2D gbufferDistance;
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(rg16_snorm) uniform readonly image2D gbufferFace;
 layout(rgba16f) uniform readonly image2D gbufferSpecular;
@@ -15,10 +15,11 @@ void main() {
         p = 2 * block + inside;
   bool there = all(lessThan(p, imageSize(gbufferSpecular)));
   p = there ? p : ivec2(0);
-  vec4 position = imageLoad(gbufferPosition, p), specular = imageLoad(gbufferSpecular, p);
-  there = there && position.w > 0.0 && tracedShare(specular) > 0.0;
+  vec4 specular = imageLoad(gbufferSpecular, p);
+  float distance_ = imageLoad(gbufferDistance, p).r;
+  there = there && distance_ > 0.0 && tracedShare(specular) > 0.0;
   uint code = uint(2 | inside.x << 4 | inside.y << 7);
-  uvec4 point = uvec4(floatBitsToUint(position.w), packSnorm2x16(octEncode(normalize(imageLoad(gbufferNormal, p).xyz))),
+  uvec4 point = uvec4(floatBitsToUint(distance_), packSnorm2x16(octEncode(normalize(imageLoad(gbufferNormal, p).xyz))),
                       packSnorm2x16(imageLoad(gbufferFace, p).xy), code | packUnorm2x16(vec2(0.0, specular.a)));
   points = there ? point : uvec4(0u);
 }

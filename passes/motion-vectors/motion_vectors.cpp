@@ -18,11 +18,11 @@ class MotionVectors : public Pass {
                       PassKind::Graphics);
     d.view();
     d.input("gbuffer", "gbuffer",
-            gbufferMembers(Usage::StorageRead, {"position", "normal", "id", "triangle"}),
+            gbufferMembers(Usage::StorageRead, {"distance", "normal", "id", "triangle"}),
             "surfaces seen by the eye");
-    d.input("previous", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal"}),
+    d.input("previous", "gbuffer", gbufferMembers(Usage::StorageRead, {"distance", "normal"}),
             "surfaces seen by the eye in the previous frame");
-    d.output("origin", image2D(VK_FORMAT_R32_UINT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
+    d.output("origin", image2D(VK_FORMAT_R32_UINT, widthOf("gbuffer.distance"), heightOf("gbuffer.distance")),
              Usage::ColorAttachment,
              "x | y << 16: one of the four pixels around the previous position, chosen at random with "
              "bilinear probabilities, or of the 5 x 5 around it at transparent surfaces; 0xffffffff if none "

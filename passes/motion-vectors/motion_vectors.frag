@@ -5,13 +5,14 @@
 #include "materials/gloss.glsl"
 #include "screen/history.glsl"
 #include "screen/same_surface.glsl"
+#include "screen/gbuffer.glsl"
 #include "scene/motion.glsl"
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(r32ui) uniform readonly uimage2D gbufferId;
 layout(r32ui) uniform readonly uimage2D gbufferTriangle;
-layout(rgba32f) uniform readonly image2D previousPosition;
+SURFACES(previous, previousAt)
 layout(rgba16f) uniform readonly image2D previousNormal;
 layout(location = 0) out uint origin;
 
@@ -50,7 +51,7 @@ uint originOf(ivec2 p, vec4 position, vec3 normal, bool veiled, ivec2 size) {
     int i = turn_ - jittered;
     ivec2 q = i < 0 ? unjittered : corner + (first ^ ivec2(i & 1, i >> 1));
     ivec2 inside = clamp(q, ivec2(0), size - 1);
-    if (q == inside && sameSurface(before, normal, normal, imageLoad(previousPosition, inside),
+    if (q == inside && sameSurface(before, normal, normal, previousAt(inside),
                                    imageLoad(previousNormal, inside).xyz, tolerance, leastCos))
       return packPixel(q);
   }
@@ -59,7 +60,7 @@ uint originOf(ivec2 p, vec4 position, vec3 normal, bool veiled, ivec2 size) {
     for (int i = 0; i < 8 * radius; ++i) {
       ivec2 q = unjittered + onRing(int((uint(i) + (bits >> 8)) % uint(8 * radius)), radius);
       ivec2 inside = clamp(q, ivec2(0), size - 1);
-      if (q == inside && sameSurface(before, normal, normal, imageLoad(previousPosition, inside),
+      if (q == inside && sameSurface(before, normal, normal, previousAt(inside),
                                      imageLoad(previousNormal, inside).xyz, tolerance, leastCos))
         return packPixel(q);
     }
@@ -68,7 +69,7 @@ uint originOf(ivec2 p, vec4 position, vec3 normal, bool veiled, ivec2 size) {
 
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
-  vec4 position = imageLoad(gbufferPosition, p);
+  vec4 position = surfaceAt(p);
   vec4 normal = imageLoad(gbufferNormal, p);
-  origin = position.w > 0.0 ? originOf(p, position, normal.xyz, isVeiled(normal.a), imageSize(gbufferPosition)) : kNone;
+  origin = position.w > 0.0 ? originOf(p, position, normal.xyz, isVeiled(normal.a), imageSize(gbufferDistance)) : kNone;
 }

@@ -1,8 +1,9 @@
 // The light of probes at each pixel.
 #include "probes/light.glsl"
 #include "scene/scene.glsl"
+#include "screen/gbuffer.glsl"
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(std140) uniform RaysGridBlock { ProbeGrid value; } raysGrid;
 layout(location = 0) out vec4 irradiance;
@@ -11,7 +12,7 @@ layout(push_constant) uniform Constants { float bias; };
 
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
-  vec4 position = imageLoad(gbufferPosition, p);
+  vec4 position = surfaceAt(p);
   vec3 normal = imageLoad(gbufferNormal, p).xyz;
   vec3 light = vec3(0.0);
   if (position.w > 0.0)

@@ -5,12 +5,13 @@
 #include "screen/history.glsl"
 #include "scene/motion.glsl"
 #include "screen/same_surface.glsl"
+#include "screen/gbuffer.glsl"
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(r32ui) uniform readonly uimage2D gbufferId;
 layout(r32ui) uniform readonly uimage2D gbufferTriangle;
-layout(rgba32f) uniform readonly image2D previousPosition;
+SURFACES(previous, previousAt)
 layout(rgba16f) uniform readonly image2D previousNormal;
 layout(r32ui) uniform readonly uimage2D surface;
 layout(r32f) uniform readonly image2D distances;
@@ -30,7 +31,7 @@ float curvatureAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
   float turned = 0.0, way = 0.0;
   for (int i = 0; i < 4; ++i) {
     ivec2 d = kApart * (1 - (i & 2)) * ivec2(i & 1, 1 - (i & 1)), q = clamp(p + d, ivec2(0), size - 1);
-    vec4 other = imageLoad(gbufferPosition, q);
+    vec4 other = surfaceAt(q);
     vec3 its = imageLoad(gbufferNormal, q).xyz, to = other.xyz - position.xyz;
     if (!sameSurface(position.xyz, normal, normal, other, its, planeTolerance * position.w, leastCosine)) continue;
     turned += dot(its - normal, to);
@@ -40,8 +41,8 @@ float curvatureAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
 }
 
 uint originOf(ivec2 p, float thing, uint otherwise) {
-  ivec2 size = imageSize(gbufferPosition);
-  vec4 position = imageLoad(gbufferPosition, p);
+  ivec2 size = imageSize(gbufferDistance);
+  vec4 position = surfaceAt(p);
   vec3 normal = imageLoad(gbufferNormal, p).xyz;
   uint id = imageLoad(gbufferId, p).r, triangle = imageLoad(gbufferTriangle, p).r;
   Motion motion = motionOf(position.xyz, id, triangle);
@@ -52,7 +53,7 @@ uint originOf(ivec2 p, float thing, uint otherwise) {
   vec2 at = (0.5 * clip.xy / clip.w + 0.5) * vec2(size) - 0.5 - view.jitterStep;  // texel centres at whole numbers
   ivec2 q = oneOfFour(at, randomStream(uint(p.x), frameIndex, kReflectionStream, uint(p.y)));
   ivec2 inside = clamp(q, ivec2(0), size - 1);
-  bool same = sameSurface(pointBefore(motion, position.xyz), normal, normal, imageLoad(previousPosition, inside),
+  bool same = sameSurface(pointBefore(motion, position.xyz), normal, normal, previousAt(inside),
                           imageLoad(previousNormal, inside).xyz, planeTolerance * position.w, leastCosine);
   return q == inside && same ? packPixel(q) : otherwise;
 }

@@ -6,13 +6,14 @@
 #include "screen/same_surface.glsl"
 #include "scene/scene.glsl"
 #include "reproject/records.h"
+#include "screen/gbuffer.glsl"
 
 const int kBlocksPerSide = kTile / INTERLEAVE;
 const uint kThreads = 16u, kPixels = uint(kTile * kTile), kBlocks = uint(kBlocksPerSide * kBlocksPerSide);
 
 layout(local_size_x = 16) in;  // few, as on a CPU device each subgroup of a group with barriers has a cost
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(rg16_snorm) uniform readonly image2D gbufferFace;
 layout(rgba16f) uniform image2D irradiance;
@@ -42,7 +43,7 @@ uint blockOf(uint index) {
 vec4 fromNeighbours(ivec2 corner, ivec2 local) {
   vec4 sum = vec4(0.0);
   vec3 origin = vec3(0.0);
-  vec4 position = imageLoad(gbufferPosition, corner + local);
+  vec4 position = surfaceAt(corner + local);
   vec3 normal = imageLoad(gbufferNormal, corner + local).xyz,
        face = octDecode(imageLoad(gbufferFace, corner + local).xy);
   float tolerance = planeTolerance * position.w;
@@ -52,7 +53,7 @@ vec4 fromNeighbours(ivec2 corner, ivec2 local) {
     if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, ivec2(kTile)))) continue;
     vec4 value = tile[q.y * kTile + q.x];
     if (value.a == 0.0) continue;
-    bool same = sameSurface(position.xyz, face, normal, imageLoad(gbufferPosition, corner + q),
+    bool same = sameSurface(position.xyz, face, normal, surfaceAt(corner + q),
                             imageLoad(gbufferNormal, corner + q).xyz, tolerance, leastCos);
     if (!same) continue;
     if (sum.a == 0.0) origin = value.rgb;
@@ -75,7 +76,7 @@ void main() {
   for (uint i = thread; i < kPixels; i += kThreads) {
     ivec2 p = corner + placeOf(i), inside = min(p, size - 1);
     vec4 light = imageLoad(irradiance, inside);
-    bool surface = p == inside && imageLoad(gbufferPosition, inside).w > 0.0;
+    bool surface = p == inside && imageLoad(gbufferDistance, inside).r > 0.0;
     tile[i] = surface ? light : vec4(0.0);
     if (surface && light.a == 0.0) open[atomicAdd(openCount, 1u)] = i;
   }
@@ -99,7 +100,7 @@ void main() {
     ivec2 p = corner + placeOf(i);
     if (newInBlock[blockOf(i)] == 0u || any(greaterThanEqual(p, size))) continue;
     imageStore(shadeMask, p, vec4(1.0));
-    if (imageLoad(gbufferPosition, p).w > 0.0) ++shaded;
+    if (imageLoad(gbufferDistance, p).r > 0.0) ++shaded;
   }
   for (uint i = thread; i < kBlocks; i += kThreads)
     if (newInBlock[i] != 0u) atomicAdd(blocks, 1u);

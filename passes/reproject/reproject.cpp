@@ -25,11 +25,11 @@ class Reproject : public Pass {
     PassDeclaration d(
         "reproject",
         "irradiance of the first eye warped to the second eye, and the blocks of pixels left to shade");
-    const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
+    const SizeExpr width = widthOf("gbuffer.distance"), height = heightOf("gbuffer.distance");
     const SizeExpr tiles = ceilDiv(width, kTile) * ceilDiv(height, kTile);
-    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal", "face"}),
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"distance", "normal", "face"}),
             "surfaces seen by the second eye");
-    d.input("source_gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal"}),
+    d.input("source_gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"distance", "normal"}),
             "surfaces seen by the first eye");
     d.input("source_irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: irradiance of the first eye to warp, the output `irradiance` of pass deferred");

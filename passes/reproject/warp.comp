@@ -7,16 +7,17 @@
 #include "screen/same_surface.glsl"
 #include "scene/scene.glsl"
 #include "reproject/records.h"
+#include "screen/gbuffer.glsl"
 
 const float kSameRow = 1e-3;  // texels
 
 layout(local_size_x = kRowWidth) in;
 
 // Images rather than textures, because on a CPU device a load from a texture costs several times as much.
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(rg16_snorm) uniform readonly image2D gbufferFace;
-layout(rgba32f) uniform readonly image2D sourceGbufferPosition;
+SURFACES(sourceGbuffer, sourceAt)
 layout(rgba16f) uniform readonly image2D sourceGbufferNormal;
 layout(rgba16f) uniform readonly image2D sourceIrradiance;
 layout(rgba16f) uniform writeonly image2D irradiance;
@@ -43,7 +44,7 @@ vec4 fromSource(vec4 position, vec3 normal, vec3 face, out vec3 near) {
   near = vec3(0.0);
   vec4 clip = sourceWorldToClip * vec4(position.xyz, 1.0);
   if (clip.w <= 0.0) return vec4(0.0);
-  ivec2 size = imageSize(sourceGbufferPosition);
+  ivec2 size = imageSize(sourceGbufferDistance);
   vec2 at = (0.5 * clip.xy / clip.w + 0.5) * vec2(size) - 0.5;  // texel centres at whole numbers
   if (any(lessThanEqual(at, vec2(-1.0))) || any(greaterThanEqual(at, vec2(size)))) return vec4(0.0);
   // Eyes side by side see a point in the same row, up to rounding, in which case two texels are enough.
@@ -58,7 +59,7 @@ vec4 fromSource(vec4 position, vec3 normal, vec3 face, out vec3 near) {
   bool found = false;
   for (int i = 0; i < texels; ++i) {
     ivec2 d = ivec2(i & 1, i >> 1), q = first + d, inside = clamp(q, ivec2(0), size - 1);
-    bool same = q == inside && sameSurface(position.xyz, face, normal, imageLoad(sourceGbufferPosition, inside),
+    bool same = q == inside && sameSurface(position.xyz, face, normal, sourceAt(inside),
                                            imageLoad(sourceGbufferNormal, inside).xyz, tolerance, leastCos);
     if (!same) continue;
     vec3 value = imageLoad(sourceIrradiance, inside).rgb;
@@ -80,7 +81,7 @@ void main() {
   uint surfaces = 0u, withoutSource = 0u;
   for (int k = 0; k < kRows; ++k) {
     ivec2 p = first + ivec2(0, k), inside = min(p, size - 1);
-    vec4 position = imageLoad(gbufferPosition, inside);
+    vec4 position = surfaceAt(inside);
     vec3 normal = imageLoad(gbufferNormal, inside).xyz, face = octDecode(imageLoad(gbufferFace, inside).xy);
     bool surface = p == inside && position.w > 0.0, known = false;
     vec4 light = vec4(0.0);

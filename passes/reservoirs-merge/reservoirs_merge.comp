@@ -2,16 +2,20 @@
 // the pairwise balance heuristic (Bitterli, "Correlations and Reuse for Fast and Accurate Physically Based Light
 // Transport", 2022, Ch. 9): the pixel is paired with each source, and in a pair a sample counts by the densities with
 // which either would have chosen it. This takes two terms a source instead of one for each two sources.
-// Define: VISIBILITY 0/1, whether who does not see a sample counts as one that could not have chosen it.
+// Defines: VISIBILITY 0/1, whether who does not see a sample counts as one that could not have chosen it; MOVED 0/1, 1
+// if the sources belong to the previous frame.
 #include "screen/history.glsl"
 #include "sampling/reservoir.glsl"
+#include "screen/gbuffer.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
-layout(rgba32f) uniform readonly image2D otherGbufferPosition;
-layout(rgba16f) uniform readonly image2D otherGbufferNormal;
+#if MOVED
+layout(rgba32f) uniform readonly image2D movedPosition;
+layout(rgba16f) uniform readonly image2D movedNormal;
+#endif
 layout(r32ui) uniform readonly uimage2D sources;
 #if VISIBILITY
 layout(r32ui) uniform readonly uimage2D visibility;  // of source k bits 2 k and 2 k + 1
@@ -40,6 +44,14 @@ void offer(Reservoir r, float weight, uint random) {
 }
 
 VisiblePoint visiblePoint(vec4 position, vec4 normal) { return VisiblePoint(position.xyz, normalize(normal.xyz)); }
+VisiblePoint pointAt(ivec2 pixel) { return visiblePoint(surfaceAt(pixel), imageLoad(gbufferNormal, pixel)); }
+#if MOVED
+VisiblePoint sourceAt(ivec2 pixel) {
+  return visiblePoint(imageLoad(movedPosition, pixel), imageLoad(movedNormal, pixel));
+}
+#else
+VisiblePoint sourceAt(ivec2 pixel) { return pointAt(pixel); }
+#endif
 
 float lightAt(VisiblePoint v, Reservoir r) { return dot(r.radiance, kLuminance) * cosineTowards(v, r); }
 
@@ -47,7 +59,7 @@ float lightAt(VisiblePoint v, Reservoir r) { return dot(r.radiance, kLuminance) 
 float countAt(int i) { return min(loadCount(others, i), most); }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(gbufferPosition);
+  ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(gbufferDistance);
   if (any(greaterThanEqual(p, size))) return;
   int i = p.y * size.x + p.x, perPixel = imageSize(sources).x / size.x;
   uint stream = randomStream(seed, frameIndex, hashCombine(kMergeStream, iteration), uint(i));
@@ -56,7 +68,7 @@ void main() {
 #else
   uint visible = 0xffffffffu;
 #endif
-  VisiblePoint here = visiblePoint(imageLoad(gbufferPosition, p), imageLoad(gbufferNormal, p));
+  VisiblePoint here = pointAt(p);
   Reservoir ours = loadReservoir(own, i);
   float ourCosine = cosineTowards(here, ours), otherCount = 0.0;
   for (int k = 0; k < perPixel; ++k) {
@@ -71,7 +83,7 @@ void main() {
     int j = q.y * size.x + q.x;
     Reservoir its = loadReservoir(others, j);
     float count = countAt(j);
-    VisiblePoint there = visiblePoint(imageLoad(otherGbufferPosition, q), imageLoad(otherGbufferNormal, q));
+    VisiblePoint there = sourceAt(q);
     // Densities are those of solid angles of this pixel, less the luminance of the sample, which both have in common.
     float grown = (visible & kItsSample) != 0u && its.weight > 0.0 ? growth(there, here, its, growthLimit) : 0.0;
     if (grown > 0.0) {

@@ -2,10 +2,11 @@
 // soon lie behind its surface or before it, where no pixel can see it, and its light would be lost.
 #include "sampling/reservoir.glsl"
 #include "scene/motion.glsl"
+#include "screen/gbuffer.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(rgba32f) uniform readonly image2D previousPosition;
+SURFACES(previous, previousAt)
 layout(rgba16f) uniform readonly image2D previousNormal;
 layout(rg16_snorm) uniform readonly image2D previousFace;
 layout(r32ui) uniform readonly uimage2D previousId;
@@ -17,18 +18,18 @@ layout(rg16_snorm) uniform writeonly image2D movedFace;
 layout(std430) writeonly buffer ReservoirBlock { Reservoir list[]; } reservoirs;
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(previousPosition);
+  ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(previousDistance);
   if (any(greaterThanEqual(p, size))) return;
-  vec4 position = imageLoad(previousPosition, p), normal = imageLoad(previousNormal, p);
+  vec4 place = previousAt(p), normal = imageLoad(previousNormal, p);
   vec3 face = octDecode(imageLoad(previousFace, p).xy);
-  if (position.w > 0.0 && imageLoad(previousId, p).r >> 16 != 0u) {
+  if (place.w > 0.0 && imageLoad(previousId, p).r >> 16 != 0u) {
     uvec4 triangle = sceneTriangle(imageLoad(previousTriangle, p).r);
     mat3 turn = turnSince(triangle);
-    position = vec4(movedTo(position.xyz, triangle), objectVisible(triangle.w >> 16) ? position.w : 0.0);
+    place = vec4(movedTo(place.xyz, triangle), objectVisible(triangle.w >> 16) ? place.w : 0.0);
     normal.xyz = turn * normal.xyz;
     face = turn * face;
   }
-  imageStore(movedPosition, p, position);
+  imageStore(movedPosition, p, place);
   imageStore(movedNormal, p, normal);
   imageStore(movedFace, p, vec4(octEncode(face), 0.0, 0.0));
 

@@ -35,6 +35,6 @@ void main() {
   vec4 before = imageLoad(direct, p);
   if (before.a == 1.0) return;
   atomicAdd(counters.pixels, 1u);
-  bool background = !(imageLoad(gbufferPosition, p).w > 0.0);
+  bool background = !(imageLoad(gbufferDistance, p).r > 0.0);
   imageStore(direct, p, vec4(background ? vec3(before) : tracedLight(p), 1.0));
 }

@@ -22,7 +22,7 @@ class ShadowRays : public Pass {
     d.view().rays().recorded();
     d.input(
         "gbuffer", "gbuffer",
-        gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo", "emission", "specular"}),
+        gbufferMembers(Usage::StorageRead, {"distance", "normal", "face", "albedo", "emission", "specular"}),
         "surfaces seen by the eye");
     d.inout("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead | Usage::StorageWrite,
             "rgb: radiance towards the eye, W/(sr m^2); a: 0 where the shadow map is in doubt; becomes 1 "
@@ -41,7 +41,7 @@ class ShadowRays : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     checkMaterials(ctx);
-    const VkExtent3D direct = ctx.extent("direct"), seen = ctx.extent("gbuffer.position");
+    const VkExtent3D direct = ctx.extent("direct"), seen = ctx.extent("gbuffer.distance");
     if (direct.width == seen.width && direct.height == seen.height) return;
     const auto text = [](VkExtent3D e) { return std::to_string(e.width) + "x" + std::to_string(e.height); };
     throw Error(ExitCode::BadInput, "`direct` has " + text(direct) + " pixels, its G-buffer " + text(seen),

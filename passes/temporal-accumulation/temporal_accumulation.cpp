@@ -29,8 +29,8 @@ class TemporalAccumulation : public Pass {
                       "running mean at every pixel of samples that some or all pixels get in a frame; it "
                       "follows the surfaces and restarts where one comes into view",
                       PassKind::Graphics);
-    const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
-    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal"}),
+    const SizeExpr width = widthOf("gbuffer.distance"), height = heightOf("gbuffer.distance");
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"distance", "normal"}),
             "surfaces seen by the eye");
     d.input("origin", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead,
             "x | y << 16: the pixel of `history` that showed the surface, 0xffffffff if there is none (pass "

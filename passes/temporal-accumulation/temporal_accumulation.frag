@@ -5,9 +5,10 @@
 #include "device/half.glsl"
 #include "screen/lattice.glsl"
 #include "screen/same_surface.glsl"
+#include "screen/gbuffer.glsl"
 
 // Images rather than textures, which cost several times as much on a CPU device.
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(r32ui) uniform readonly uimage2D origin;
 layout(rgba16f) uniform readonly image2D samples;
@@ -113,7 +114,7 @@ Sample sampleAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
   bool found = p == inside && code >> 10 == 0;
   ivec2 offset = ivec2(latticeOffset(frameIndex, uint(side))), corner = ((inside + offset) & -side) - offset;
   ivec2 from = clamp(corner + ivec2(code >> 4 & 7, code >> 7 & 7), ivec2(0), size - 1);
-  bool own = found && sameSurface(position.xyz, normal, normal, imageLoad(gbufferPosition, from),
+  bool own = found && sameSurface(position.xyz, normal, normal, surfaceAt(from),
                                   imageLoad(gbufferNormal, from).xyz, planeTolerance * position.w, leastCos);
   return Sample(withGloss(value.rgb, inside >> shift), side, found, value.a >= 0.0, own);
 }
@@ -158,8 +159,8 @@ Mean fromAround(ivec2 p, vec4 position, vec3 normal, ivec2 size, int side, float
 }
 
 void main() {
-  ivec2 p = ivec2(gl_FragCoord.xy), size = imageSize(gbufferPosition);
-  vec4 position = imageLoad(gbufferPosition, p);
+  ivec2 p = ivec2(gl_FragCoord.xy), size = imageSize(gbufferDistance);
+  vec4 position = surfaceAt(p);
   vec3 normal = imageLoad(gbufferNormal, p).xyz;
   bool surface = position.w > 0.0;
   Mean old = fromHistory(p);

@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 
 uniform usamplerBuffer state;  // VplState
 #if DEPTH_TEST
-uniform texture2D gbufferPosition;
+layout(r32f) uniform readonly image2D gbufferDistance;
 #endif
 layout(std430) buffer KeysBlock { uint pixel[]; } keys;
 
@@ -27,8 +27,8 @@ void main() {
 #if DEPTH_TEST
   // Draws the VPL if it is in front of the surface seen at its centre, or on it; the tolerance allows
   // for a voxel's size.
-  vec4 seen = texelFetch(gbufferPosition, ivec2(centre), 0);
-  if (seen.w > 0.0 && distance > 1.03 * length(seen.xyz - view.eye)) return;
+  float seen = imageLoad(gbufferDistance, ivec2(centre)).r;
+  if (seen > 0.0 && distance > 1.03 * seen) return;
 #endif
   // The upper bits of a positive float order as the float does. Of VPLs with the same upper bits, the lower
   // slot is on top.

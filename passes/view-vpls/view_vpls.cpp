@@ -23,7 +23,7 @@ class ViewVpls : public Pass {
     d.input("state", vplStateBuffer(), Usage::TexelRead, "VPLs; empty slots are not drawn");
     d.input("vpls", vplBuffer(), Usage::TexelRead, "the same VPLs as light sources, for show `luminance`")
         .makeOptional();
-    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"position"}),
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"distance"}),
             "surfaces that occlude VPLs; if not wired, all VPLs are drawn")
         .makeOptional();
     d.input("picture", image2D(), Usage::Sampled,

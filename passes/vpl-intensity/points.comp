@@ -4,13 +4,14 @@
 #include "scene/scene.glsl"
 #include "sampling/fovea.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
+#include "screen/gbuffer.glsl"
 
 layout(local_size_x = 64) in;
 
 #if TRACED
 uniform samplerBuffer tracedStarts;
 #else
-uniform texture2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 uniform texture2D gbufferNormal;
 uniform texture2D gbufferFace;
 #endif
@@ -35,9 +36,9 @@ layout(push_constant) uniform Constants {
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= points) return;
-  ivec2 size = textureSize(gbufferPosition, 0);
+  ivec2 size = imageSize(gbufferDistance);
   ivec2 pixel = screenPoint(region, imageShare64ths, i, points, makeFovea(view.gaze, vec2(size), foveaRadius), size);
-  vec4 position = texelFetch(gbufferPosition, pixel, 0);
+  vec4 position = surfaceAt(pixel);
   bool there = position.w > 0.0;
   vec3 normal = there ? normalize(texelFetch(gbufferNormal, pixel, 0).xyz) : vec3(0.0);
   vec3 face = octDecode(texelFetch(gbufferFace, pixel, 0).xy);

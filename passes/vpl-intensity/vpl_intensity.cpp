@@ -49,7 +49,7 @@ PassDeclaration declareIntensity(const char* type, const char* doc) {
           "voxelised surfaces, for which the VPLs stand");
   d.input("radiance", voxelRadianceBuffer(), Usage::TexelRead,
           "radiance of each voxel side; w: luminance, above 0 if the side is lit");
-  d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"position", "normal", "face"}),
+  d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"distance", "normal", "face"}),
           "surfaces seen by the eye, from which the eye paths start");
   d.input("placed", vplBuffer(), Usage::TexelRead,
           "VPLs with which `atlas` was drawn, which gives their positions");

@@ -5,6 +5,7 @@
 #include "scene/scene.glsl"
 #include "sampling/fovea.glsl"
 #include "voxels/voxel_trace.glsl"
+#include "screen/gbuffer.glsl"
 
 // An invocation processes a block of pixels row by row, alternating in direction. Neighbours mostly show the same
 // side, so a run of them costs one look-up of the side and one atomic. A run is a loop of its own, as a CPU device
@@ -14,7 +15,7 @@ const int kBlock = BLOCK;
 
 layout(local_size_x = GROUP, local_size_y = GROUP) in;
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rg16_snorm) uniform readonly image2D gbufferFace;
 layout(std430) buffer Weights { uint weights[]; };    // bits of non-negative floats, which are ordered as the floats
 layout(std430) buffer Counters { uint counters[]; };  // visible, unassigned
@@ -55,7 +56,7 @@ Seen seenAt(VoxelGrid grid, ivec2 first, int i, ivec2 size) {
   Seen seen;
   int row = i / kBlock, column = i % kBlock;
   seen.pixel = spacing * (first + ivec2((row & 1) == 0 ? column : kBlock - 1 - column, row));
-  vec4 position = imageLoad(gbufferPosition, min(seen.pixel, size - 1));
+  vec4 position = surfaceAt(min(seen.pixel, size - 1));
   seen.surface = i < kBlock * kBlock && all(lessThan(seen.pixel, size)) && position.w > 0.0;
   seen.cell = ivec3(floor(worldToVoxel(grid, position.xyz)));
   seen.facing = voxelSideOf(octDecode(imageLoad(gbufferFace, min(seen.pixel, size - 1)).xy));
@@ -63,7 +64,7 @@ Seen seenAt(VoxelGrid grid, ivec2 first, int i, ivec2 size) {
 }
 
 void main() {
-  ivec2 size = imageSize(gbufferPosition);
+  ivec2 size = imageSize(gbufferDistance);
   ivec2 first = ivec2(gl_GlobalInvocationID.xy) * kBlock;
   VoxelGrid grid = voxelsGrid();
 #if !WHOLE_IMAGE

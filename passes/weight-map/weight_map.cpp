@@ -16,7 +16,7 @@ class WeightMap : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("weight-map", "foveated weight of every voxel side that the eye sees");
     d.view();
-    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "face"}),
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"distance", "face"}),
             "surfaces seen by the eye");
     d.input("voxels", "voxels", voxelMembers({"index", "surface"}), "voxel grid whose sides are weighted");
     d.output("weights", voxelWeightBuffer(countOf("voxels.surface")),
@@ -37,7 +37,7 @@ class WeightMap : public Pass {
         .define("WHOLE_IMAGE", is("region", "image"))
         .define("BLOCK", kBlock)
         .define("GROUP", kGroup)
-        .groups(ceilDiv(widthOf("gbuffer.position"), tile), ceilDiv(heightOf("gbuffer.position"), tile));
+        .groups(ceilDiv(widthOf("gbuffer.distance"), tile), ceilDiv(heightOf("gbuffer.distance"), tile));
     return d;
   }
 };

@@ -13,16 +13,16 @@ constexpr uint32_t kWidth = 8, kHeight = 4;
 // Red of every pixel, with lines of the given strength over a white picture.
 std::vector<float> outlined(double strength) {
   fovea::graph::loadPlugin(FOVEA_PLUGIN);
-  std::vector<glm::vec4> picture(kWidth * kHeight, glm::vec4(1)), position, normal;
+  std::vector<glm::vec4> picture(kWidth * kHeight, glm::vec4(1)), normal;
+  const std::vector<float> distance(kWidth * kHeight, 5);
   for (uint32_t y = 0; y < kHeight; ++y)
     for (uint32_t x = 0; x < kWidth; ++x) {
-      position.emplace_back(x, y, 0, 5);  // w: distance to the eye
       normal.push_back(x < kWidth / 2 ? glm::vec4(0, 0, 1, 0) : glm::vec4(1, 0, 0, 0));
     }
   fovea::test::PassTest test("outline");
   test.viewSize(kWidth, kHeight).param("strength", strength);
   test.image("picture", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, picture);
-  test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, position);
+  test.image("gbuffer.distance", VK_FORMAT_R32_SFLOAT, kWidth, kHeight, 1, distance);
   test.image("gbuffer.normal", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, normal);
   test.run();
   const std::vector<float> rgba = test.floats("image");

@@ -39,6 +39,20 @@ SHARED_SIZE(FrameBlock, 112)
 SHARED_OFFSET(FrameBlock, boundsMin, 32)
 SHARED_OFFSET(FrameBlock, firstMovingVertex, 80)
 
+// The rays from an eye through the points of its picture: that through the point (x, y), in pixels from the top left
+// corner, has the direction corner + x right + y down, in world space and not normalised.
+struct PixelRays {
+  vec3 eye SHARED_ZERO;  // world space, m
+  float unused0 SHARED_ZERO;
+  vec3 corner SHARED_ZERO;
+  float unused1 SHARED_ZERO;
+  vec3 right SHARED_ZERO;
+  float unused2 SHARED_ZERO;
+  vec3 down SHARED_ZERO;
+  float unused3 SHARED_ZERO;
+};
+SHARED_SIZE(PixelRays, 64)
+
 // What belongs to the eye: `view` in shaders.
 struct ViewBlock {
   mat4 worldToView SHARED_ZERO;
@@ -52,8 +66,9 @@ struct ViewBlock {
   vec2 jitterStep SHARED_ZERO;   // pixels: by how much View::jitter has changed since the last frame
   vec2 size SHARED_ZERO;         // pixels
   vec2 inverseSize SHARED_ZERO;  // 1 / pixels
+  PixelRays rays;
 };
-SHARED_SIZE(ViewBlock, 368)
+SHARED_SIZE(ViewBlock, 432)
 SHARED_OFFSET(ViewBlock, gaze, 336)
 
 SHARED_CONSTANT uint kMaxLights = 128u;

@@ -8,12 +8,13 @@
 // Needs the ports `gbuffer` and `irradiance`.
 #if GLOSS
 #include "materials/gloss.glsl"
+#include "screen/gbuffer.glsl"
 #endif
 
 layout(rgba16f) uniform readonly image2D gbufferAlbedo;
 layout(rgba16f) uniform readonly image2D irradiance;  // background: 0
 #if GLOSS
-layout(rgba32f) uniform readonly image2D gbufferPosition;
+SURFACES(gbuffer, surfaceAt)
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(rgba16f) uniform readonly image2D gbufferSpecular;
 #if GLOSS == 1
@@ -37,7 +38,7 @@ void main() {
   vec4 albedo = imageLoad(gbufferAlbedo, p), normal = imageLoad(gbufferNormal, p), light = imageLoad(irradiance, p);
   vec4 specular = imageLoad(gbufferSpecular, p);
   Gloss surface = glossOf(specular, normal.a, albedo.a, 0.04);
-  float cosine = dot(normal.xyz, normalize(view.eye - imageLoad(gbufferPosition, p).xyz));
+  float cosine = dot(normal.xyz, normalize(view.eye - surfaceAt(p).xyz));
   vec3 share = surfaceAlbedo(surface, mirrorAlbedo(cosine, surface.roughness), meanMirrorAlbedo(surface.roughness));
 #if GLOSS == 1
   vec3 underLobe = imageLoad(gloss, p).rgb;

@@ -63,20 +63,19 @@ struct Input {
 
 void run(PassTest& test, const Input& in) {
   const auto w = uint32_t(kSize.x), h = uint32_t(kSize.y);
-  const auto positions = [](const GBuffer& seen) {
-    std::vector<float> position;
-    for (const SurfacePixel& p : seen.pixels)
-      position.insert(position.end(), {p.position.x, p.position.y, p.position.z, p.distance});
-    return position;
+  const auto distances = [](const GBuffer& seen) {
+    std::vector<float> list;
+    for (const SurfacePixel& p : seen.pixels) list.push_back(p.distance);
+    return list;
   };
   test.viewSize(w, h).param("frames", in.frames).param("deviations", in.deviations);
-  test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, positions(in.now.seen));
+  wireSurfaces(test, "gbuffer", in.now.seen.camera, kSize.x, kSize.y, distances(in.now.seen));
   std::vector<glm::vec4> normal;
   for (const bool veiled : in.veiled) normal.emplace_back(0, 0, 1, veiled ? -0.5f : 0.5f);
   test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, halves(normal));
   test.image("gbuffer.id", VK_FORMAT_R32_UINT, w, h, 1, in.id);
   test.image("gbuffer.triangle", VK_FORMAT_R32_UINT, w, h, 1, std::vector<uint32_t>(size_t(w) * h));
-  test.image("previous.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, positions(in.before.seen));
+  wireSurfaces(test, "previous", in.before.seen.camera, kSize.x, kSize.y, distances(in.before.seen));
   test.image("previous.id", VK_FORMAT_R32_UINT, w, h, 1, in.previousId);
   test.image("origin", VK_FORMAT_R32_UINT, w, h, 1, in.origin);
   test.image("radiance", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, halves(in.light));
@@ -228,8 +227,12 @@ TEST(Antialias, EqualsTheReference) {
     for (int i = 0; i < kPixels; ++i) {
       const int x = i % kSize.x, y = i / kSize.x;
       if (x > 34 && x < 38 && y > 5) in.previousId[size_t(i)] = 7;
-      if (x > 42 && y > 5 && y < 15)
-        in.previousId[size_t(i)] = 7, in.before.seen.pixels[size_t(i)].position.x += 1;
+      if (x > 42 && y > 5 && y < 15) {
+        SurfacePixel& before = in.before.seen.pixels[size_t(i)];
+        before.distance *= 0.2f;  // so near that it is seen elsewhere by the other eye
+        before.position = pointOn(in.before.seen.camera, x, y, before.distance);
+        in.previousId[size_t(i)] = 7;
+      }
       if (x > 42 && y > 20 && y < 30) in.previousId[size_t(i)] = 1u << 16 | 9;
     }
     int fresh = 0, seen = 0, edge = 0, left = 0;

@@ -15,6 +15,7 @@
 #include "tests/references/fovea.h"
 #include "tests/references/paraboloid.h"
 #include "tests/references/voxel_trace.h"
+#include "tests/support/pixel_rays.h"
 #include "tests/support/voxels.h"
 
 namespace fovea::test {
@@ -30,19 +31,21 @@ struct SeenPixel {
 
 struct SeenImage {
   glm::ivec2 size{1};
+  scene::PixelRays camera;
   std::vector<SeenPixel> pixels;
 
-  explicit SeenImage(glm::ivec2 s) : size(s), pixels(size_t(s.x * s.y)) {}
+  explicit SeenImage(glm::ivec2 s, const scene::PixelRays& rays = {})
+      : size(s), camera(rays), pixels(size_t(s.x * s.y)) {}
   const SeenPixel& at(glm::ivec2 p) const { return pixels[size_t(p.y * size.x + p.x)]; }
   SeenPixel& at(glm::ivec2 p) { return pixels[size_t(p.y * size.x + p.x)]; }
 
   // Rounds the values as the formats do.
   void wire(PassTest& test, const std::string& port = "gbuffer") {
-    std::vector<float> position;
+    std::vector<glm::vec4> position;
     std::vector<uint16_t> normal;
     std::vector<int16_t> face;
     for (SeenPixel& p : pixels) {
-      position.insert(position.end(), {p.position.x, p.position.y, p.position.z, p.distance});
+      position.emplace_back(p.position, p.distance);
       for (int k = 0; k < 3; ++k) {
         normal.push_back(glm::packHalf1x16(p.normal[k]));
         p.normal[k] = glm::unpackHalf1x16(normal.back());
@@ -64,7 +67,7 @@ struct SeenImage {
       p.face = glm::normalize(n);
     }
     const auto w = uint32_t(size.x), h = uint32_t(size.y);
-    test.image(port + ".position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
+    wireSurfaces(test, port, camera, size.x, size.y, position);
     test.image(port + ".normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
     test.image(port + ".face", VK_FORMAT_R16G16_SNORM, w, h, 1, face);
   }

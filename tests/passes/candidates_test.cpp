@@ -53,7 +53,7 @@ scene::Scene makeRoom(bool moving = false) {
 SeenImage seen(const scene::Scene& s, const scene::Geometry& g, const scene::Camera& camera,
                glm::ivec2 size) {
   const scene::View view = scene::makeView(camera, glm::uvec2(size), g);
-  SeenImage image(size);
+  SeenImage image(size, scene::pixelRays(view));
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x) {
       const glm::dvec3 ray(view.rayDirection({float(x) + 0.5f, float(y) + 0.5f}));
@@ -255,10 +255,14 @@ struct Chambers {
           }
           voxels.index[size_t(x + 50 * (y + 50 * z))] = uint32_t(voxels.surface.size() / 2);
         }
+    const auto place = [&](int x, int y) {
+      return voxels.grid.voxelToWorld(glm::vec3(2 * x + 1.5f, 1.05f, 2 * y + 1.5f));
+    };
+    image.camera = raysOnto({25, 50, 25}, place(0, 0), place(1, 0) - place(0, 0), place(0, 1) - place(0, 0));
     for (int y = 0; y < kSize.y; ++y)
       for (int x = 0; x < kSize.x; ++x) {
         SeenPixel& p = image.at({x, y});
-        p.position = voxels.grid.voxelToWorld(glm::vec3(2 * x + 1.5f, 1.05f, 2 * y + 1.5f));
+        p.position = place(x, y);
         p.distance = 1;
       }
   }
@@ -403,7 +407,7 @@ TEST(Candidates, BouncesAreCosineDistributed) {
     voxels.surface.push_back({});
     voxels.index[size_t(i)] = uint32_t(voxels.surface.size() / 2);
   }
-  SeenImage image({1, 1});
+  SeenImage image({1, 1}, raysOnto(centre + normal, centre, glm::vec3(0), glm::vec3(0)));
   image.pixels[0] = {centre, 1, normal, normal};
   PassTest test("candidates");
   test.scene(s).viewSize(1, 1).param("count", kCount);

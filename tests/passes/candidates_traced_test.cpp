@@ -35,7 +35,7 @@ TEST(CandidatesTraced, LieWhereEyePathsEnd) {
   s.cameras.emplace_back();
   const scene::Geometry g = scene::flatten(s);
   const VoxelArrays voxels = voxelizeReference(s, g, 12);
-  SeenImage image({8, 8});
+  SeenImage image({8, 8}, raysOnto({0, 0, 0}, {0, -1, 0}, glm::vec3(0), glm::vec3(0)));
   for (SeenPixel& p : image.pixels) {
     p.position = {0, -1, 0};
     p.distance = 1;

@@ -50,7 +50,7 @@ void compose(bool withDirect) {
 TEST(Compose, GlossySurfacesReflectOnTopOfTheirDiffuseLayer) {
   const path_trace::BsdfParameters material = bsdfParameters({0.8f, 0.5f, 0.2f}, 0.5f, 0.4f);
   const glm::vec3 eye(0, 2, 1);
-  GBuffer g(kWidth, kHeight, [&](int x, int y) {
+  GBuffer g(kWidth, kHeight, raysOnto(eye, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}), [&](int x, int y) {
     SurfacePixel p;
     p.position = {float(x), 0, float(y)};
     p.distance = 1;
@@ -88,7 +88,7 @@ TEST(Compose, GlossySurfacesReflectOnTopOfTheirDiffuseLayer) {
 TEST(Compose, SmoothSurfacesReflectWhatRaysFind) {
   for (const auto& [roughness, share] : {std::pair(0.1f, 1.0), {0.76f, 0.6}, {0.9f, 0.0}}) {
     const path_trace::BsdfParameters metal = bsdfParameters(glm::vec3(0.9f), 1, roughness);
-    GBuffer g(kWidth, kHeight, [&](int x, int y) {
+    GBuffer g(kWidth, kHeight, raysOnto({0, 1000, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}), [&](int x, int y) {
       SurfacePixel p;
       p.position = {float(x), 0, float(y)};
       p.distance = 1;

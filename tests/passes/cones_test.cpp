@@ -30,7 +30,9 @@ glm::vec3 uneven(const scene::VoxelSide& v) {
 
 // The floor, slanted normals on it, and background in one corner.
 GBuffer floorOf() {
-  return {kSize, kSize, [](int x, int y) {
+  const float step = 1.6f / kSize;
+  return {kSize, kSize, raysOnto({0, 2, 0}, {-0.8f, -1, -0.8f}, {step, 0, 0}, {0, 0, step}),
+          [](int x, int y) {
             SurfacePixel p;
             p.position = {1.6f * float(x) / kSize - 0.8f, -1, 1.6f * float(y) / kSize - 0.8f};
             p.normal = glm::normalize(glm::vec3(0.02f * float(x - 12), 1, 0.02f * float(y - 12)));

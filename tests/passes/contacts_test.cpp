@@ -42,7 +42,9 @@ std::vector<glm::uvec2> find(const GBuffer& seen, double reach, double width, do
 
 // A floor 1.5 m below the eye, seen up to the horizon.
 GBuffer makeGrazingFloor() {
-  return {kSize.x, kSize.y, [](int x, int y) {
+  const scene::PixelRays rays =
+      raysOnto({0, 0, 0}, {-0.5f, 0.5f, -1}, {1 / float(kSize.x), 0, 0}, {0, -1 / float(kSize.y), 0});
+  return {kSize.x, kSize.y, rays, [](int x, int y) {
             SurfacePixel p;
             if (y <= kSize.y / 2) return p;
             const float depth = 1.5f * float(kSize.y) / float(y - kSize.y / 2);

@@ -20,7 +20,9 @@ const glm::vec3 kEye(0.3f, 2, 1.5f);
 // A floor of one material, seen from kEye.
 GBuffer floorOf(const path_trace::BsdfParameters& material, int width = 24, int height = 20,
                 float step = 0.1f) {
-  GBuffer g(width, height, [&](int x, int y) {
+  const glm::vec3 first(-0.5f * float(width - 1) * step, 0, -0.5f * float(height - 1) * step);
+  const scene::PixelRays rays = raysOnto(kEye, first, {step, 0, 0}, {0, 0, step});
+  GBuffer g(width, height, rays, [&](int x, int y) {
     SurfacePixel p;
     p.position = {(float(x) - 0.5f * float(width - 1)) * step, 0,
                   (float(y) - 0.5f * float(height - 1)) * step};
@@ -134,7 +136,8 @@ TEST(DeferredFull, DiffuseLayersGetWhatTheSurfaceLetsThrough) {
           SurfacePixel p;
           p.distance = glm::distance(p.position, kEye);
           setMaterial(p, material, glm::normalize(kEye).y);
-          GBuffer g(8, 8, [&](int, int) { return p; });
+          GBuffer g(8, 8, raysOnto(kEye, p.position, glm::vec3(0), glm::vec3(0)),
+                    [&](int, int) { return p; });
           g.full = true;
           const glm::vec3 direction(std::sqrt(1 - cosine * cosine), cosine, 0);
           const auto vpls = std::vector{makeVpl(10.0f * direction, -direction, glm::vec3(1e4f), 1e-3f)};

@@ -7,7 +7,7 @@
 
 #include "fovea/error.h"
 #include "framework/base/random.h"
-#include "tests/passes/deferred_reference.h"
+#include "tests/passes/deferred_scenes.h"
 
 namespace fovea::test {
 namespace {
@@ -28,27 +28,18 @@ std::vector<Vpl> randomVpls(uint32_t count) {
   return list;
 }
 
-GBuffer makeFloor(int width, int height, float step) {
-  return GBuffer(width, height, [&](int x, int y) {
-    SurfacePixel p;
-    p.position = {(float(x) - 0.5f * float(width - 1)) * step, 0,
-                  (float(y) - 0.5f * float(height - 1)) * step};
-    p.distance = 5;
-    return p;
-  });
-}
-
 // Patches at different depths, tilted, with holes to the background.
 GBuffer makePatches(int width, int height) {
-  return GBuffer(width, height, [](int x, int y) {
-    const uint32_t patch = uint32_t(x / 9 + 8 * (y / 7)), pixel = uint32_t(x + 64 * y);
-    SurfacePixel p;
-    p.distance = random(30, patch) < 0.15f ? 0.0f : 3 + random(31, patch);
-    p.position = {0.02f * float(x) - 0.5f, 0.5f * random(32, patch) + 0.004f * random(33, pixel),
-                  0.02f * float(y) - 0.4f};
-    p.normal = glm::normalize(glm::vec3(random(34, patch) - 0.5f, 1, random(35, patch) - 0.5f));
-    return p;
-  });
+  return GBuffer(
+      width, height, raysOnto({0, 4, 0}, {-0.5f, 0, -0.4f}, {0.02f, 0, 0}, {0, 0, 0.02f}), [](int x, int y) {
+        const uint32_t patch = uint32_t(x / 9 + 8 * (y / 7)), pixel = uint32_t(x + 64 * y);
+        SurfacePixel p;
+        p.distance = random(30, patch) < 0.15f ? 0.0f : 3 + random(31, patch);
+        p.position = {0.02f * float(x) - 0.5f, 0.5f * random(32, patch) + 0.004f * random(33, pixel),
+                      0.02f * float(y) - 0.4f};
+        p.normal = glm::normalize(glm::vec3(random(34, patch) - 0.5f, 1, random(35, patch) - 0.5f));
+        return p;
+      });
 }
 
 // The blocks of n x n pixels that `listed` names, in the form in which pass reproject writes them.

@@ -12,6 +12,7 @@
 #include "fovea/test.h"
 #include "shaders/records/vpl.h"
 #include "tests/references/paraboloid.h"
+#include "tests/support/pixel_rays.h"
 
 namespace fovea::test {
 
@@ -38,6 +39,9 @@ struct GBuffer {
   std::vector<SurfacePixel> pixels;
   const SurfacePixel& at(int x, int y) const { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
 
+  scene::PixelRays camera;
+
+  // Without a camera, a pass can only read the other members, or background.
   GBuffer(int w, int h, const std::function<SurfacePixel(int, int)>& pixel) : width(w), height(h) {
     for (int y = 0; y < h; ++y) {
       for (int x = 0; x < w; ++x) {
@@ -49,17 +53,30 @@ struct GBuffer {
     }
   }
 
+  // Surfaces that do not lie on the rays of their pixels are moved there, at the same distance from the eye.
+  GBuffer(int w, int h, const scene::PixelRays& rays, const std::function<SurfacePixel(int, int)>& pixel)
+      : GBuffer(w, h, pixel) {
+    camera = rays;
+    for (int i = 0; i < w * h; ++i) {
+      SurfacePixel& p = pixels[size_t(i)];
+      if (p.distance > 0) p.distance = glm::distance(p.position, rays.eye);
+      p.position = pointOn(rays, i % w, i / w, p.distance);
+    }
+  }
+
   bool full = false;  // materials
 
   // Those members of the bundle at `port` that the pass reads.
   void wire(PassTest& test, const std::string& port = "gbuffer") const {
-    std::vector<float> position;
+    std::vector<glm::vec4> position;
+    std::vector<float> distance;
     std::vector<uint16_t> normal, face, albedo, specular;
     const auto half = [](std::vector<uint16_t>& to, std::initializer_list<float> values) {
       for (float v : values) to.push_back(glm::packHalf1x16(v));
     };
     for (const SurfacePixel& p : pixels) {
-      position.insert(position.end(), {p.position.x, p.position.y, p.position.z, p.distance});
+      position.emplace_back(p.position, p.distance);
+      distance.push_back(p.distance);
       half(normal, {p.normal.x, p.normal.y, p.normal.z, p.grazing});
       const glm::vec2 oct = octEncode(glm::normalize(p.normal));
       for (const float v : {oct.x, oct.y}) face.push_back(glm::packSnorm1x16(v));
@@ -71,6 +88,7 @@ struct GBuffer {
     for (const graph::MemberSpec& m : test.declaration().findPort(port)->members) {
       const std::string name = port + "." + m.name;
       if (m.name == "position") test.image(name, VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
+      if (m.name == "distance") wireSurfaces(test, port, camera, width, height, distance);
       if (m.name == "normal") test.image(name, VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
       if (m.name == "face") test.image(name, VK_FORMAT_R16G16_SNORM, w, h, 1, face);
       if (m.name == "albedo") test.image(name, VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, albedo);

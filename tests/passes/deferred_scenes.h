@@ -19,13 +19,19 @@ inline scene::Vpl makeVpl(glm::vec3 position, glm::vec3 normal, glm::vec3 intens
   return v;
 }
 
+// The rays of an eye above the origin onto a floor, `step` metres apart there.
+inline scene::PixelRays floorRays(int width, int height, float step, float eyeDistance) {
+  const glm::vec3 first(-0.5f * float(width - 1) * step, 0, -0.5f * float(height - 1) * step);
+  return raysOnto({0, eyeDistance, 0}, first, {step, 0, 0}, {0, 0, step});
+}
+
 // A floor seen from above: pixels (x, y) around the origin, `step` metres apart.
 inline GBuffer makeFloor(int width, int height, float step, float eyeDistance = 5) {
-  return GBuffer(width, height, [&](int x, int y) {
+  return GBuffer(width, height, floorRays(width, height, step, eyeDistance), [&](int x, int y) {
     SurfacePixel p;
     p.position = {(float(x) - 0.5f * float(width - 1)) * step, 0,
                   (float(y) - 0.5f * float(height - 1)) * step};
-    p.distance = eyeDistance;
+    p.distance = 1;
     p.albedo = {0.25f, 0.5f, 0.75f};
     return p;
   });
@@ -46,19 +52,20 @@ inline std::vector<scene::Vpl> randomVpls(uint32_t count) {
 
 // Patches at different depths, with holes between them.
 inline GBuffer bumpyPatches(int width, int height) {
-  return GBuffer(width, height, [](int x, int y) {
-    const uint32_t patch = uint32_t(x / 9 + 8 * (y / 7)), pixel = uint32_t(x + 64 * y);
-    SurfacePixel p;
-    p.distance = random(30, patch) < 0.15f ? 0.0f : 3 + random(31, patch);
-    p.position = {0.02f * float(x) - 0.5f, random(32, patch) + 0.004f * random(33, pixel),
-                  0.02f * float(y) - 0.4f};
-    const auto tilt = [&](uint32_t k) {
-      return random(34 + k, patch) - 0.5f + 0.3f * (random(36 + k, pixel) - 0.5f);
-    };
-    p.normal = glm::normalize(glm::vec3(tilt(0), 1, tilt(1)));
-    p.albedo = {random(38, pixel), random(39, pixel), random(40, pixel)};
-    return p;
-  });
+  return GBuffer(width, height, raysOnto({0, 4, 0}, {-0.5f, 0, -0.4f}, {0.02f, 0, 0}, {0, 0, 0.02f}),
+                 [](int x, int y) {
+                   const uint32_t patch = uint32_t(x / 9 + 8 * (y / 7)), pixel = uint32_t(x + 64 * y);
+                   SurfacePixel p;
+                   p.distance = random(30, patch) < 0.15f ? 0.0f : 3 + random(31, patch);
+                   p.position = {0.02f * float(x) - 0.5f, random(32, patch) + 0.004f * random(33, pixel),
+                                 0.02f * float(y) - 0.4f};
+                   const auto tilt = [&](uint32_t k) {
+                     return random(34 + k, patch) - 0.5f + 0.3f * (random(36 + k, pixel) - 0.5f);
+                   };
+                   p.normal = glm::normalize(glm::vec3(tilt(0), 1, tilt(1)));
+                   p.albedo = {random(38, pixel), random(39, pixel), random(40, pixel)};
+                   return p;
+                 });
 }
 
 inline void expectImage(const std::vector<float>& image, const GBuffer& g,

@@ -190,20 +190,15 @@ TEST(Deferred, FilterOnAFlatWallIsNearTheSumOfAllVpls) {
 // Two walls in a corner, and a rod two pixels wide in front of them: each is lit as if it were alone, without a halo
 // or a pattern.
 TEST(Deferred, EdgesKeepTheirOwnLight) {
-  const GBuffer g(64, 64, [](int x, int y) {
+  const scene::PixelRays rays = raysOnto({-3, 0.32f, 3}, {-0.3f, 0, 0}, {0.005f, 0, 0.005f}, {0, 0.01f, 0});
+  const GBuffer g(64, 64, rays, [&](int x, int y) {
     SurfacePixel p;
-    p.distance = 5;
-    if (x < 30) {
-      p.position = {float(x - 30) * 0.01f, float(y) * 0.01f, 0};
-      p.normal = {0, 0, 1};
-    } else if (x == 44 || x == 45) {
-      p.position = {0.3f, float(y) * 0.01f, 0.2f};
-      p.normal = {0, 0, 1};
-      p.distance = 4;
-    } else {
-      p.position = {0, float(y) * 0.01f, float(x - 30) * 0.01f};
-      p.normal = {-1, 0, 0};
-    }
+    const glm::vec3 ray = pointOn(rays, x, y, 1) - rays.eye;
+    const float toLeft = -rays.eye.z / ray.z, toRight = -rays.eye.x / ray.x;  // walls, at z = 0 and at x = 0
+    const bool rod = x == 44 || x == 45;
+    p.distance = rod ? 0.8f * toRight : std::min(toLeft, toRight);
+    p.position = rays.eye + p.distance * ray;
+    p.normal = rod || toLeft < toRight ? glm::vec3(0, 0, 1) : glm::vec3(-1, 0, 0);
     return p;
   });
   std::vector<Vpl> vpls;  // far away: even light on each surface, different on each

@@ -12,6 +12,7 @@
 #include "passes/path-trace/lights.h"
 #include "tests/passes/full_materials_reference.h"
 #include "tests/passes/shadow_view.h"
+#include "tests/support/pixel_rays.h"
 
 namespace fovea::test {
 namespace {
@@ -168,12 +169,13 @@ struct Surface {
 // Direct radiance, RGBA, of the plane of receivers.
 std::vector<float> shade(const std::vector<scene::Light>& lights, const std::vector<ShadowView>& views,
                          const std::vector<float>& depth, const char* filter, const Surface& surface = {}) {
-  std::vector<float> position, normal, face, albedo, emission, specular;
+  std::vector<glm::vec4> position;
+  std::vector<float> normal, face, albedo, emission, specular;
   const bool full = surface.material != nullptr;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       const glm::vec3 p = receiver(x, y);
-      position.insert(position.end(), {p.x, p.y, p.z, surface.distance});
+      position.emplace_back(p, surface.distance);
       SurfacePixel pixel;
       pixel.albedo = kAlbedo;
       const float dielectric = full ? surface.material->specularF0.g : 0;
@@ -190,7 +192,8 @@ std::vector<float> shade(const std::vector<scene::Light>& lights, const std::vec
   PassTest test("direct");
   test.param("filter", filter).viewSize(kWidth, kHeight).scene(lit(lights));
   test.view("materials", full ? "full" : "diffuse");
-  test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, position);
+  const glm::vec3 right(2 * kExtent / kWidth, 0, 0), down(0, 0, 2 * kExtent / kHeight);
+  wireSurfaces(test, "gbuffer", raysOnto({0, 5, 0}, receiver(0, 0), right, down), kWidth, kHeight, position);
   test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, halves(normal));
   test.image("gbuffer.face", VK_FORMAT_R16G16_SNORM, kWidth, kHeight, 1, snorms(face));
   test.image("gbuffer.albedo", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, halves(albedo));

@@ -56,7 +56,7 @@ struct Eye {
     return scene::makeView(camera, glm::uvec2(kSize), geometry);
   }
   GBuffer look() const {
-    return {kSize.x, kSize.y, [&](int x, int y) {
+    return {kSize.x, kSize.y, scene::pixelRays(view), [&](int x, int y) {
               SurfacePixel p;
               const glm::dvec3 ray = glm::normalize(glm::dvec3(view.rayDirection(glm::vec2(x, y) + 0.5f)));
               const RayHit hit = castRay(scene, geometry, glm::dvec3(view.eye), ray, {});

@@ -75,9 +75,8 @@ Difference compare(const scene::Scene& s, int& compared) {
   PassTest test("gbuffer");
   test.scene(s).viewSize(kWidth, kHeight).view("materials", "full");
   test.run();
-  const auto position = test.floats("gbuffer.position"), normal = test.floats("gbuffer.normal"),
-             albedo = test.floats("gbuffer.albedo"), specular = test.floats("gbuffer.specular"),
-             emission = test.floats("gbuffer.emission");
+  const auto normal = test.floats("gbuffer.normal"), albedo = test.floats("gbuffer.albedo"),
+             specular = test.floats("gbuffer.specular"), emission = test.floats("gbuffer.emission");
   const auto id = test.values<uint32_t>("gbuffer.id");
   const scene::View& view = test.lastFrame().views[0];
   const scene::Geometry& g = test.geometry();

@@ -12,6 +12,7 @@
 #include "framework/scene/scene.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/references/octahedral.h"
+#include "tests/support/pixel_rays.h"
 #include "tests/support/raster_grid.h"
 #include "tests/support/sky.h"
 
@@ -33,7 +34,7 @@ struct Pixel {
 class Output {
  public:
   explicit Output(const PassTest& test)
-      : position_(test.floats("gbuffer.position")),
+      : surfaces_(surfacesOf(test, "gbuffer", int(test.desc("gbuffer.distance").width))),
         normal_(test.floats("gbuffer.normal")),
         face_(test.floats("gbuffer.face")),
         albedo_(test.floats("gbuffer.albedo")),
@@ -43,7 +44,7 @@ class Output {
     auto vec = [i](const std::vector<float>& v) {
       return glm::vec4(v[4 * i], v[4 * i + 1], v[4 * i + 2], v[4 * i + 3]);
     };
-    return {vec(position_),
+    return {surfaces_[i],
             glm::vec3(vec(normal_)),
             scene::octDecode({face_[2 * i], face_[2 * i + 1]}),
             glm::vec3(vec(albedo_)),
@@ -52,7 +53,8 @@ class Output {
   }
 
  private:
-  std::vector<float> position_, normal_, face_, albedo_, emission_;
+  std::vector<glm::vec4> surfaces_;
+  std::vector<float> normal_, face_, albedo_, emission_;
   std::vector<uint32_t> id_;
 };
 
@@ -308,12 +310,13 @@ TEST(GBuffer, CodesOfColoursBecomeLinearLight) {
   PassTest test("gbuffer");
   test.viewSize(1024, 8).scene(s);
   test.run();
-  const std::vector<float> position = test.floats("gbuffer.position"), albedo = test.floats("gbuffer.albedo");
+  const std::vector<glm::vec4> surfaces = surfacesOf(test, "gbuffer", 1024);
+  const std::vector<float> albedo = test.floats("gbuffer.albedo");
   size_t seen = 0;
-  for (size_t i = 0; i < position.size() / 4; ++i) {
-    if (position[4 * i + 3] == 0) continue;
+  for (size_t i = 0; i < surfaces.size(); ++i) {
+    if (surfaces[i].w == 0) continue;
     ++seen;
-    const glm::vec4 want = scene::reflectance(s, m, {0.5f + 0.5f * position[4 * i], 0.5f});
+    const glm::vec4 want = scene::reflectance(s, m, {0.5f + 0.5f * surfaces[i].x, 0.5f});
     for (int c = 0; c < 3; ++c)
       ASSERT_NEAR(albedo[4 * i + c], want[c], 1e-3f * want[c] + 2e-6f) << "pixel " << i;
   }

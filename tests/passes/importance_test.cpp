@@ -16,6 +16,7 @@
 #include "shaders/records/vpl.h"
 #include "tests/references/paraboloid.h"
 #include "tests/references/voxel_trace.h"
+#include "tests/support/pixel_rays.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 
@@ -350,8 +351,9 @@ std::vector<float> seenWeights(const scene::Scene& s, const VoxelArrays& voxels,
   PassTest gbuffer("gbuffer"), weightMap("weight-map");
   gbuffer.scene(s).viewSize(128, 128).run();
   setVoxels(weightMap.scene(s).viewSize(128, 128).beforeFrame(look), voxels);
-  for (const char* port : {"gbuffer.position", "gbuffer.face"})
+  for (const char* port : {"gbuffer.distance", "gbuffer.face"})
     weightMap.image(port, gbuffer.desc(port).format, 128, 128, 1, gbuffer.bytes(port));
+  weightMap.buffer("gbuffer.camera", gbuffer.values<scene::PixelRays>("gbuffer.camera"), "PixelRays");
   weightMap.run();
   EXPECT_LT(weightMap.counter("unassigned"), 128 * 128 / 200);
   return weightMap.values<float>("weights");

@@ -16,7 +16,7 @@ constexpr int kWidth = 30, kHeight = 21;
 
 // Rough and smooth columns, the last half of them metal, a row of background and one that reflects nothing.
 GBuffer surfaces() {
-  return {kWidth, kHeight, [](int x, int y) {
+  return {kWidth, kHeight, raysOnto({0, 0, 0}, {0, 0, -5}, {1, 0, 0}, {0, 1, 0}), [](int x, int y) {
             SurfacePixel p;
             p.position = {float(x), float(y), -5};
             p.distance = y == 3 ? 0.0f : glm::length(p.position);
@@ -67,9 +67,10 @@ TEST(Mirrors, OnePixelOfEachBlockThatIsSmooth) {
 TEST(Mirrors, TilesInWhichAnyPixelIsSmooth) {
   constexpr int kTile = 16, kColumns = 5, kRows = 3;
   const std::vector<glm::ivec2> smooth{{0, 0}, {31, 15}, {69, 20}, {40, 32}, {48, 39}, {64, 39}};
-  GBuffer g(70, 40, [&](int x, int y) {
+  GBuffer g(70, 40, raysOnto({0, 0, 0}, {0, 0, -5}, {1, 0, 0}, {0, 1, 0}), [&](int x, int y) {
     SurfacePixel p;
     p.distance = 5;
+    p.position = {float(x), float(y), -5};
     p.specular = glm::vec4(glm::vec3(0.04f), std::ranges::count(smooth, glm::ivec2(x, y)) > 0 ? 0.2f : 0.6f);
     return p;
   });

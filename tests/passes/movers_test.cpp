@@ -108,7 +108,7 @@ TEST_P(Movers, GBuffer) {
   std::set<size_t> counts;
   atFrames(test, [&](uint32_t index) {
     const auto id = test.values<uint32_t>("gbuffer.id");
-    const auto position = test.floats("gbuffer.position");
+    const std::vector<glm::vec4> surfaces = surfacesOf(test, "gbuffer", int(kSize));
     const scene::View& view = test.lastFrame().views[0];
     size_t box = 0, wrong = 0;
     for (uint32_t i = 0; i < id.size(); ++i) {
@@ -116,7 +116,7 @@ TEST_P(Movers, GBuffer) {
       const RayHit hit = castRay(s, test.geometry(), glm::dvec3(view.eye), ray, {.cullSingleSided = true});
       box += hit && isBox(test.geometry(), hit.triangle);
       const uint32_t expected = hit ? test.geometry().triangles[hit.triangle].materialAndObject : ~0u;
-      const glm::dvec3 got(position[4 * i], position[4 * i + 1], position[4 * i + 2]);
+      const glm::dvec3 got(surfaces[i]);
       wrong += id[i] != expected || (hit && glm::distance(got, glm::dvec3(view.eye) + hit.t * ray) > 1e-3);
     }
     EXPECT_LT(wrong, 12u) << "frame " << index;  // pixels on an edge
@@ -141,6 +141,8 @@ struct Seen {
       id.push_back(hit ? geometry.triangles[hit.triangle].materialAndObject : ~0u);
     }
   }
+
+  std::vector<float> distances() const { return distancesOf(scene::pixelRays(view), int(kSize), position); }
 
   scene::Geometry geometry;
   scene::View view;
@@ -176,9 +178,10 @@ TEST_P(Movers, MotionVectors) {
   test.scene(s).viewSize(kSize, kSize);
   const std::vector<uint64_t> normals(kSize * kSize);
   const std::vector<uint32_t> numbers(kSize * kSize);
-  const std::vector<glm::vec4> positions(kSize * kSize);
+  const std::vector<float> distances(kSize * kSize);
   for (const std::string bundle : {"gbuffer", "previous"}) {
-    test.image(bundle + ".position", VK_FORMAT_R32G32B32A32_SFLOAT, kSize, kSize, 1, positions);
+    test.image(bundle + ".distance", VK_FORMAT_R32_SFLOAT, kSize, kSize, 1, distances);
+    test.buffer(bundle + ".camera", std::vector<scene::PixelRays>(1), "PixelRays");
     test.image(bundle + ".normal", VK_FORMAT_R16G16B16A16_SFLOAT, kSize, kSize, 1, normals);
   }
   test.image("gbuffer.id", VK_FORMAT_R32_UINT, kSize, kSize, 1, numbers);
@@ -187,11 +190,13 @@ TEST_P(Movers, MotionVectors) {
     before = now;
     now.emplace(s, frame);
     if (!before) before = now;
-    t.set("gbuffer.position", now->position);
+    t.set("gbuffer.distance", now->distances());
+    t.set("gbuffer.camera", std::vector{scene::pixelRays(now->view)});
     t.set("gbuffer.normal", now->normal);
     t.set("gbuffer.id", now->id);
     t.set("gbuffer.triangle", now->triangle);
-    t.set("previous.position", before->position);
+    t.set("previous.distance", before->distances());
+    t.set("previous.camera", std::vector{scene::pixelRays(before->view)});
     t.set("previous.normal", before->normal);
   });
   atFrames(test, [&](uint32_t index) {
@@ -245,8 +250,8 @@ TEST_P(Movers, ReservoirsMotion) {
   PassTest test("reservoirs-motion");
   test.scene(s).viewSize(kSize, kSize);
   const std::vector<uint32_t> numbers(kSize * kSize);
-  test.image("previous.position", VK_FORMAT_R32G32B32A32_SFLOAT, kSize, kSize, 1,
-             std::vector<glm::vec4>(kSize * kSize));
+  test.image("previous.distance", VK_FORMAT_R32_SFLOAT, kSize, kSize, 1, numbers);
+  test.buffer("previous.camera", std::vector<scene::PixelRays>(1), "PixelRays");
   test.image("previous.normal", VK_FORMAT_R16G16B16A16_SFLOAT, kSize, kSize, 1,
              std::vector<uint64_t>(kSize * kSize));
   test.image("previous.face", VK_FORMAT_R16G16_SNORM, kSize, kSize, 1, numbers);
@@ -261,7 +266,8 @@ TEST_P(Movers, ReservoirsMotion) {
     for (const uint64_t n : before->normal)
       faces.push_back(glm::packSnorm2x16(octEncode(glm::vec3(glm::unpackHalf4x16(n)))));
     samples = samplesOn(*before);
-    t.set("previous.position", before->position);
+    t.set("previous.distance", before->distances());
+    t.set("previous.camera", std::vector{scene::pixelRays(before->view)});
     t.set("previous.normal", before->normal);
     t.set("previous.face", faces);
     t.set("previous.id", before->id);
@@ -287,7 +293,7 @@ TEST_P(Movers, ReservoirsMotion) {
     for (size_t i = 0; i < position.size(); ++i) {
       const uint32_t triangle = before->triangle[i], sampled = before->triangle[i * 37 % position.size()];
       const bool away = index == kAway && triangle != ~0u && isBox(now->geometry, triangle);
-      EXPECT_EQ(position[i].w, away ? 0 : before->position[i].w);
+      EXPECT_FLOAT_EQ(position[i].w, away ? 0 : before->position[i].w);
       if (triangle != ~0u && !away) {
         const glm::vec3 up(glm::unpackHalf4x16(before->normal[i]));
         check(triangle, glm::vec3(before->position[i]), up, glm::vec3(position[i]),

@@ -10,6 +10,7 @@
 #include "fovea/error.h"
 #include "fovea/test.h"
 #include "places.h"
+#include "tests/support/pixel_rays.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {
@@ -18,17 +19,21 @@ namespace {
 constexpr uint32_t kWidth = 12, kHeight = 5;
 
 struct Surfaces {
+  scene::PixelRays camera;
   std::vector<glm::vec4> position, normal;
 };
 
 // Two planes at right angles, which meet in the middle of the picture.
 Surfaces corner() {
   Surfaces s;
+  const float half = 0.5f * float(kWidth);
+  s.camera = raysOnto({-3, 0, 3}, {-0.05f * (2 * half - 0.5f), 0, 0.025f}, {0.05f, 0, 0.05f}, {0, 0.1f, 0});
   for (uint32_t y = 0; y < kHeight; ++y)
     for (uint32_t x = 0; x < kWidth; ++x) {
-      const bool left = x < kWidth / 2;
-      s.position.emplace_back(left ? 0.1f * float(x) : 0.6f, 0.1f * float(y),
-                              left ? 0.0f : 0.1f * float(x - kWidth / 2), 5.0f);
+      const glm::vec3 ray = pointOn(s.camera, int(x), int(y), 1) - s.camera.eye;
+      const float toLeft = -s.camera.eye.z / ray.z, toRight = -s.camera.eye.x / ray.x;
+      const bool left = toLeft < toRight;
+      s.position.emplace_back(pointOn(s.camera, int(x), int(y), std::min(toLeft, toRight)), 1);
       s.normal.push_back(left ? glm::vec4(0, 0, 1, 0) : glm::vec4(1, 0, 0, 0));
     }
   return s;
@@ -49,7 +54,7 @@ std::string own(const char* type) {
 
 void wire(PassTest& test, const Surfaces& s, const std::vector<glm::vec4>& picture) {
   test.image("picture", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, picture);
-  test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, s.position);
+  wireSurfaces(test, "gbuffer", s.camera, kWidth, kHeight, s.position);
   test.image("gbuffer.normal", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, s.normal);
 }
 

@@ -25,15 +25,16 @@ scene::ProbeGrid gridOf(uint32_t columns, uint32_t rows, uint32_t layers) {
 // Points in the grid, a few of them beyond it, and a row of background.
 GBuffer points(glm::vec3 eye) {
   Numbers numbers(5);
-  std::vector<SurfacePixel> pixels;
-  for (int i = 0; i < kWidth * kHeight; ++i) {
-    SurfacePixel p;
-    p.position = {numbers.next(-1.3f, 1.3f), numbers.next(-0.8f, 1.3f), numbers.next(-4.3f, -1.7f)};
-    p.normal = numbers.direction();
-    p.distance = i / kWidth == 4 ? 0.0f : glm::distance(p.position, eye);
-    pixels.push_back(p);
-  }
-  return {kWidth, kHeight, [&](int x, int y) { return pixels[size_t(y * kWidth + x)]; }};
+  const glm::vec3 right(2.6f / kWidth, 0, 0), down(0, -2.1f / kHeight, 0);
+  const scene::PixelRays rays = raysOnto(eye, {-1.3f, 1.3f, -3}, right, down);
+  return {kWidth, kHeight, rays, [&](int x, int y) {
+            SurfacePixel p;
+            p.position =
+                glm::vec3(-1.3f, 1.3f, numbers.next(-4.3f, -1.7f)) + float(x) * right + float(y) * down;
+            p.normal = numbers.direction();
+            p.distance = y == 4 ? 0.0f : 1.0f;
+            return p;
+          }};
 }
 
 TEST(ProbeSample, LightOfTheProbesThatSeeThePoint) {

@@ -26,7 +26,7 @@ constexpr uint32_t kWidth = 36, kHeight = 28, kPixels = kWidth * kHeight;
 // What the eye sees of the scene, and the inputs that passes need of it.
 struct Inputs {
   Room room = lookInto(sceneOfEverything(false), 8, glm::ivec2(kWidth, kHeight));
-  GBuffer seen{kWidth, kHeight, [&](int x, int y) {
+  GBuffer seen{kWidth, kHeight, room.camera, [&](int x, int y) {
                  const Seen& s = room.pixels[size_t(y) * kWidth + size_t(x)];
                  SurfacePixel p;
                  p.position = s.position;
@@ -117,7 +117,6 @@ void wireGiSamples(PassTest& test, const Inputs&) { test.param("paths", 2); }
 
 void wireReservoirsVisibility(PassTest& test, const Inputs& in) {
   in.seen.wire(test);
-  in.seen.wire(test, "other_gbuffer");
   std::vector<passes::Reservoir> own(kPixels), others(kPixels);
   std::vector<uint32_t> sources;
   Numbers numbers(7);

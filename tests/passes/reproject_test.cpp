@@ -23,7 +23,8 @@ struct Eye {
   GBuffer seen;
 
   Eye(const scene::Scene& s, const scene::Geometry& geometry, glm::vec3 position, glm::uvec2 size)
-      : view(makeViewAt(geometry, position, size)), seen(int(size.x), int(size.y), [&](int x, int y) {
+      : view(makeViewAt(geometry, position, size)),
+        seen(int(size.x), int(size.y), scene::pixelRays(view), [&](int x, int y) {
           SurfacePixel p;
           const glm::dvec3 ray =
               glm::normalize(glm::dvec3(view.rayDirection({float(x) + 0.5f, float(y) + 0.5f})));
@@ -373,7 +374,7 @@ TEST(Reproject, BackgroundIsNoHole) {
 
 // Surfaces shifted and turned at random against what the first eye saw.
 GBuffer shaken(const GBuffer& g) {
-  return GBuffer(g.width, g.height, [&](int x, int y) {
+  return GBuffer(g.width, g.height, g.camera, [&](int x, int y) {
     SurfacePixel p = g.at(x, y);
     const auto i = uint32_t(y * g.width + x), patch = uint32_t(x / 7 + 64 * (y / 5));
     if (random(0, patch) < 0.15f) p.position += p.normal * (0.012f * p.distance * (random(1, i) - 0.5f));

@@ -27,7 +27,7 @@ struct Numbers {
 };
 
 inline GBuffer gbufferOf(const Room& room) {
-  return {room.size.x, room.size.y, [&](int x, int y) {
+  return {room.size.x, room.size.y, room.camera, [&](int x, int y) {
             const Seen& seen = room.pixels[size_t(y * room.size.x + x)];
             SurfacePixel p;
             p.position = seen.position;

@@ -13,11 +13,11 @@ constexpr glm::ivec2 kSize(21, 13);  // not whole work groups
 constexpr int kSources = 4, kPixels = kSize.x * kSize.y;
 
 // Surfaces below and points above that send light down.
-GBuffer ground(Numbers& numbers, glm::ivec2 size) {
-  return {size.x, size.y, [&](int x, int y) {
+GBuffer ground(Numbers& numbers, glm::ivec2 size, float step = 0.1f, float height = 0.1f) {
+  return {size.x, size.y, raysOnto({1, 3, 1}, {0, 0, 0}, {step, 0, 0}, {0, 0, step}), [&](int x, int y) {
             SurfacePixel p;
-            p.position = {0.1f * float(x), 0.1f * numbers.next(), 0.1f * float(y)};
-            p.distance = (x * y) % 17 == 5 ? 0.0f : 3.0f;
+            p.position = {step * float(x), height * numbers.next(), step * float(y)};
+            p.distance = 3;
             p.normal = glm::normalize(glm::vec3(numbers.next() - 0.5f, 1, numbers.next() - 0.5f));
             return p;
           }};
@@ -60,7 +60,7 @@ struct Input {
                    each = uint32_t(sources.size() / here.pixels.size());
     PassTest test("reservoirs-merge");
     here.wire(test);
-    there.wire(test, "other_gbuffer");
+    there.wire(test, "moved");
     test.param("unbiased", unbiased).param("most", int(most)).param("growth_limit", double(limit));
     test.param("iteration", 2).seed(7);
     test.buffer("own", own, "Reservoir");
@@ -193,8 +193,9 @@ TEST(ReservoirsMerge, ChoosesInProportionToTheWeights) {
     if (offers.size() == kSources + 1 && std::ranges::none_of(offers, none)) break;
   }
   ASSERT_LT(at, kPixels);
-  Input in{
-      {kSide, kSide, [&](int, int) { return small.here.pixels[size_t(at)]; }}, small.there, {}, {}, {}, {}};
+  const SurfacePixel& pixel = small.here.pixels[size_t(at)];
+  const scene::PixelRays rays = raysOnto({1, 3, 1}, pixel.position, glm::vec3(0), glm::vec3(0));
+  Input in{{kSide, kSide, rays, [&](int, int) { return pixel; }}, small.there, {}, {}, {}, {}};
   in.there = GBuffer(kSide, kSide, [&](int x, int y) {
     return small.there.at(std::min(x, kSize.x - 1), std::min(y, kSize.y - 1));
   });
@@ -228,11 +229,7 @@ struct Patches {
   GBuffer seen;
   std::vector<Reservoir> list;
 
-  explicit Patches(Numbers& numbers) : seen(ground(numbers, {kSide, kSide})) {
-    for (SurfacePixel& p : seen.pixels) {
-      p.position = {numbers.next(), 0, numbers.next()};
-      p.distance = 3;
-    }
+  explicit Patches(Numbers& numbers) : seen(ground(numbers, {kSide, kSide}, 1.0f / kSide, 0)) {
     for (int k = 0; k < kCount; ++k) list.push_back(point(numbers));
   }
   static bool inShade(size_t pixel) { return pixel % 2 == 0; }

@@ -10,7 +10,7 @@ constexpr int kWidth = 19, kHeight = 11;
 
 TEST(ReservoirsResolve, RadianceTimesCosineTimesWeight) {
   Numbers numbers;
-  GBuffer g(kWidth, kHeight, [&](int x, int y) {
+  GBuffer g(kWidth, kHeight, raysOnto({0, 0, 0}, {0, 0, -5}, {1, 0, 0}, {0, 1, 0}), [&](int x, int y) {
     SurfacePixel p;
     p.position = {float(x), float(y), -5};
     p.distance = y == 3 ? 0.0f : 5.0f;

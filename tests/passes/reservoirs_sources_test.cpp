@@ -14,14 +14,15 @@ constexpr double kPlane = 0.01, kCosine = 0.9;
 
 // Two walls that meet, a step in one of them, and some background.
 GBuffer surfaces() {
-  return {kWidth, kHeight, [](int x, int y) {
+  const scene::PixelRays rays = raysOnto({0, 0, 0}, {-2, -1, -2}, {0.08f, 0, -0.02f}, {0, 0.04f, 0});
+  return {kWidth, kHeight, rays, [=](int x, int y) {
             SurfacePixel p;
-            const bool left = x < 20;
+            const glm::vec3 ray = pointOn(rays, x, y, 1);
+            const float toLeft = -2 / ray.x, toBack = (y < 12 ? -3.8f : -4.0f) / ray.z;
+            const bool left = ray.x < 0 && toLeft < toBack;
             p.normal = left ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
-            p.position = left
-                             ? glm::vec3(-2, 0.05f * float(y), -4 + 0.1f * float(20 - x))
-                             : glm::vec3(-2 + 0.1f * float(x - 20), 0.05f * float(y), y < 12 ? -3.8f : -4.0f);
-            p.distance = x > 55 && y > 40 ? 0.0f : glm::length(p.position);
+            p.distance = x > 55 && y > 40 ? 0.0f : left ? toLeft : toBack;
+            p.position = p.distance * ray;
             return p;
           }};
 }

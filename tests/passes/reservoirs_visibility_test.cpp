@@ -46,7 +46,7 @@ struct Input {
   void wire(PassTest& test, uint32_t sourceColumns = uint32_t(kSources * kSize.x)) const {
     const uint32_t height = uint32_t(kSize.y);
     seen.wire(test);
-    before.wire(test, "other_gbuffer");
+    before.wire(test, "moved");
     test.scene(room.scene);
     test.buffer("own", own, "Reservoir");
     test.buffer("others", others, "Reservoir");

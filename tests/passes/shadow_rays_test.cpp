@@ -47,7 +47,7 @@ Room litBoxes() {
 // Over the room, whose direct light is `direct`. material: if it is full.
 void wire(PassTest& test, const Room& room, const std::vector<uint64_t>& direct,
           const path_trace::BsdfParameters* material = nullptr) {
-  GBuffer seen(kSize.x, kSize.y, [&](int x, int y) {
+  GBuffer seen(kSize.x, kSize.y, room.camera, [&](int x, int y) {
     const Seen& s = room.pixels[size_t(y * kSize.x + x)];
     SurfacePixel p;
     if (!s.there) return p;

@@ -12,6 +12,7 @@
 #include "shaders/records/vpl.h"
 #include "tests/references/paraboloid.h"
 #include "tests/references/voxel_trace.h"
+#include "tests/support/pixel_rays.h"
 #include "tests/support/voxels.h"
 
 namespace fovea::test {
@@ -149,18 +150,19 @@ TEST(ViewVpls, DiscsCoverThePictureNearestFirst) {
 TEST(ViewVpls, SurfacesHideVpls) {
   // A wall at z = 0, seen by every pixel; one VPL on it, one behind it.
   const std::vector<scene::VplState> states{vplAt({-1, 0, 0}, 1, 30), vplAt({1, 0, -1}, 1, 60)};
-  std::vector<float> positions;
+  std::vector<glm::vec4> positions;
   scene::Camera camera;
   camera.position = {0, 0, 5};
   const scene::View view = scene::makeView(camera, glm::uvec2(kSize), scene::Geometry{});
   for (uint32_t y = 0; y < kSize; ++y)
     for (uint32_t x = 0; x < kSize; ++x) {
       const vec3 d = view.rayDirection(glm::vec2(x, y) + 0.5f), p = view.eye + d * (-5.0f / d.z);
-      positions.insert(positions.end(), {p.x, p.y, p.z, 1});
+      positions.emplace_back(p, 1);
     }
   PassTest test("view-vpls");
   test.viewSize(kSize, kSize).param("show", "age").buffer("state", states, "VplState");
-  test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, kSize, kSize, 1, positions).run();
+  wireSurfaces(test, "gbuffer", scene::pixelRays(view), kSize, kSize, positions);
+  test.run();
   auto at = [&](vec3 p) {
     const glm::vec4 clip = view.worldToClip * glm::vec4(p, 1);
     const glm::vec2 c = (0.5f * glm::vec2(clip) / clip.w + 0.5f) * float(kSize);

@@ -17,6 +17,7 @@
 #include "tests/references/fovea.h"
 #include "tests/references/paraboloid.h"
 #include "tests/references/voxel_trace.h"
+#include "tests/support/pixel_rays.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 
@@ -34,6 +35,7 @@ struct Room {
   VoxelArrays voxels;
   glm::ivec2 size{0};
   std::vector<Seen> pixels;
+  scene::PixelRays camera;
   scene::Voxels view() const { return {voxels.grid, voxels.index, voxels.surface}; }
 };
 
@@ -47,6 +49,7 @@ inline Room lookInto(scene::Scene scene, int resolution, glm::ivec2 size, float 
   room.voxels = voxelizeReference(room.scene, room.geometry, resolution);
   room.size = size;
   const scene::View view = scene::makeView(camera, size, room.geometry);
+  room.camera = scene::pixelRays(view);
   for (int i = 0; i < size.x * size.y; ++i) {
     const glm::dvec3 d = view.rayDirection(glm::vec2(i % size.x, i / size.x) + 0.5f);
     const RayHit hit = castRay(room.scene, room.geometry, view.eye, d);

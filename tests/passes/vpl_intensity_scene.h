@@ -93,11 +93,11 @@ inline Inputs inputs(const Room& room, std::vector<scene::VplState> vpls) {
 
 inline void wire(PassTest& test, const Inputs& in, const char* strategy, const WeightSettings& settings) {
   const Room& room = *in.room;
-  std::vector<float> position;
+  std::vector<glm::vec4> position;
   std::vector<uint16_t> normal;
   std::vector<int16_t> face;
   for (const Seen& s : room.pixels) {
-    position.insert(position.end(), {s.position.x, s.position.y, s.position.z, s.there ? 1.0f : 0.0f});
+    position.emplace_back(s.position, s.there ? 1 : 0);
     for (const float x : {s.normal.x, s.normal.y, s.normal.z, 0.0f}) normal.push_back(glm::packHalf1x16(x));
     // All faces of the test scenes are axis-parallel.
     const glm::vec2 oct = s.normal.z >= -0.5f ? glm::vec2(s.normal) : glm::vec2(1);
@@ -118,7 +118,7 @@ inline void wire(PassTest& test, const Inputs& in, const char* strategy, const W
   if (chosen == "importance-area") test.param("kernel", settings.clamp > 0 ? "clamp" : "disc");
   if (chosen == "importance-area" && settings.clamp > 0) test.param("clamp_distance", settings.clamp);
   test.viewSize(w, h).scene(room.scene);
-  test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
+  wireSurfaces(test, "gbuffer", room.camera, room.size.x, room.size.y, position);
   test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
   test.image("gbuffer.face", VK_FORMAT_R16G16_SNORM, w, h, 1, face);
   setVoxels(test, room.voxels);

@@ -10,6 +10,7 @@
 #include "framework/base/random.h"
 #include "framework/scene/scene.h"
 #include "tests/references/fovea.h"
+#include "tests/support/pixel_rays.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 
@@ -42,16 +43,17 @@ struct Pixel {
 
 struct Picture {
   int width, height;
+  scene::PixelRays camera;
   std::vector<Pixel> pixels;
-  Picture(int w, int h) : width(w), height(h), pixels(size_t(w * h)) {}
+  Picture(int w, int h, const scene::PixelRays& rays)
+      : width(w), height(h), camera(rays), pixels(size_t(w * h)) {}
   Pixel& at(int x, int y) { return pixels[size_t(y * width + x)]; }
   const Pixel& at(int x, int y) const { return pixels[size_t(y * width + x)]; }
 
-  std::vector<float> positions() const {
-    std::vector<float> list;
-    for (const Pixel& p : pixels)
-      list.insert(list.end(), {p.position.x, p.position.y, p.position.z, p.distance});
-    return list;
+  std::vector<float> distances() const {
+    std::vector<glm::vec4> list;
+    for (const Pixel& p : pixels) list.emplace_back(p.position, p.distance);
+    return distancesOf(camera, width, list);
   }
   void wire(PassTest& test) const {
     std::vector<uint32_t> face;
@@ -63,8 +65,8 @@ struct Picture {
       face.push_back(glm::packSnorm2x16(oct));
     }
     test.viewSize(uint32_t(width), uint32_t(height));
-    test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, uint32_t(width), uint32_t(height), 1,
-               positions());
+    test.image("gbuffer.distance", VK_FORMAT_R32_SFLOAT, uint32_t(width), uint32_t(height), 1, distances());
+    test.buffer("gbuffer.camera", std::vector{camera}, "PixelRays");
     test.image("gbuffer.face", VK_FORMAT_R16G16_SNORM, uint32_t(width), uint32_t(height), 1, face);
   }
 };
@@ -115,33 +117,35 @@ void expectEqual(const PassTest& test, const Expected& expected) {
   EXPECT_EQ(test.counter("unassigned"), expected.unassigned);
 }
 
-// Non-empty cells of the grid.
-std::vector<glm::ivec3> surfaceCells(const VoxelArrays& voxels) {
-  std::vector<glm::ivec3> cells;
-  const int r = voxels.resolution;
-  for (int z = 0; z < r; ++z)
-    for (int y = 0; y < r; ++y)
-      for (int x = 0; x < r; ++x)
-        if (voxels.index[size_t(x + r * (y + r * z))] != 0) cells.push_back({x, y, z});
-  return cells;
-}
-
-// Patches of a few pixels that lie in one cell each, some of them background, outside the grid, or with a face for
-// which the cell has no side.
+// Patches of a few pixels, seen from the middle of the room, most of them in a cell with a surface, some in the
+// background, outside the grid, or with a face for which the cell has no side.
 Picture randomPicture(int width, int height, const VoxelArrays& voxels) {
-  const std::vector<glm::ivec3> cells = surfaceCells(voxels);
-  Picture picture(width, height);
+  const int r = voxels.resolution;
+  const auto voxelAt = [&](glm::vec3 position) {
+    const glm::ivec3 cell(glm::floor(voxels.grid.worldToVoxel(position)));
+    const bool inside = cell == glm::clamp(cell, glm::ivec3(0), glm::ivec3(r - 1));
+    return inside ? voxels.index[size_t(cell.x + r * (cell.y + r * cell.z))] : 0;
+  };
+  Picture picture(
+      width, height,
+      raysOnto({0.1f, 0.2f, 0.9f}, {-1, 1, -1}, {2 / float(width), 0, 0}, {0, -2 / float(height), 0}));
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const uint32_t patch = uint32_t((x + y % 3) / 5 + 100 * (y / 3)), pixel = uint32_t(x + 1000 * y);
       Pixel& p = picture.at(x, y);
-      p.distance = random(0, patch) < 0.1f ? 0.0f : 1.0f;
-      const glm::ivec3 cell = cells[size_t(random(1, patch) * float(cells.size()))];
-      const uint32_t voxel = voxels.index[size_t(cell.x + kResolution * (cell.y + kResolution * cell.z))] - 1;
-      const glm::vec3 inCell(random(2, pixel), random(3, pixel), random(4, pixel));
-      p.position = voxels.grid.voxelToWorld(glm::vec3(cell) + 0.02f + 0.96f * inCell);
-      if (random(5, patch) < 0.05f) p.position += glm::vec3(5);
-      if (random(5, patch) > 0.95f) p.position *= 0.3f;  // mostly an empty cell
+      // The first of some distances at which a surface may be; most of what is nearer is an empty cell.
+      uint32_t voxel = 0;
+      for (uint32_t i = 0; i < 200 && voxel == 0; ++i) {
+        p.distance = 4 * random(8 + i, patch);
+        p.position = pointOn(picture.camera, x, y, p.distance);
+        voxel = voxelAt(p.position);
+      }
+      if (random(5, patch) < 0.05f) p.distance = 9;
+      if (random(5, patch) > 0.95f) p.distance *= 0.3f;
+      p.position = pointOn(picture.camera, x, y, p.distance);
+      if (random(0, patch) < 0.1f) p.distance = 0;
+      if (voxel == 0) continue;
+      voxel -= 1;
       const uint32_t wanted = random(6, patch) < 0.5f ? 0u : 1u;
       const bool other = voxels.surface[2 * voxel + wanted].area <= 0;
       p.face = voxels.surface[2 * voxel + (other ? 1 - wanted : wanted)].normal;
@@ -177,7 +181,9 @@ TEST(WeightMap, EqualsTheReference) {
 
 // A wall across the whole image, with one pixel per cell and so on: a side is known only from its own pixels.
 Picture wallPicture(int size) {
-  Picture picture(size, size);
+  const float step = 0.995f * 2 / float(size);
+  const glm::vec3 first(0.5f * step - 0.995f, 0.995f - 0.5f * step, -1);
+  Picture picture(size, size, raysOnto({0, 0, 1}, first, {step, 0, 0}, {0, -step, 0}));
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
       Pixel& p = picture.at(x, y);
@@ -256,7 +262,7 @@ TEST(WeightMap, ForgetsTheLastFrame) {
   wallWeights(test.scene(s), voxels, glm::vec2(0.5f), picture);
   EXPECT_GT(test.counter("visible"), 200);
   for (Pixel& p : picture.pixels) p.distance = 0;
-  test.set("gbuffer.position", picture.positions());
+  test.set("gbuffer.distance", picture.distances());
   test.run();
   EXPECT_EQ(test.counter("visible"), 0);
   for (const float w : test.values<float>("weights")) ASSERT_EQ(w, 0);

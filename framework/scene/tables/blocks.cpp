@@ -93,6 +93,7 @@ ViewBlock viewBlock(const View& v) {
   block.jitterStep = v.jitter - v.previousJitter;
   block.size = glm::max(glm::vec2(v.size), glm::vec2(1));
   block.inverseSize = 1.0f / block.size;
+  block.rays = pixelRays(v);
   return block;
 }
 
