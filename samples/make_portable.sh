@@ -41,7 +41,7 @@ addLicence() {
   if [ -f "/usr/share/doc/$1/copyright" ]; then cp -L "/usr/share/doc/$1/copyright" "$stage/licenses/$1"; fi
 }
 # Linked statically, or all header.
-for package in glslang-dev libspirv-cross-c-shared-dev libdraco-dev libglm-dev nlohmann-json3-dev libcli11-dev; do addLicence "$package"; done
+for package in glslang-dev spirv-tools libspirv-cross-c-shared-dev libdraco-dev libglm-dev nlohmann-json3-dev libcli11-dev; do addLicence "$package"; done
 while read -r name file; do
   case "$name" in
     libc.so.*|libm.so.*|libdl.so.*|libpthread.so.*|librt.so.*|libresolv.so.*|libvulkan.so.*|ld-linux*|linux-vdso*) continue ;;

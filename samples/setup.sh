@@ -10,7 +10,7 @@ packages=(
   # Vulkan: headers and loader, a driver that renders on the CPU, validation layers
   libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
   # shaders: GLSL to SPIR-V, reflection
-  glslang-dev glslang-tools libspirv-cross-c-shared-dev
+  glslang-dev glslang-tools spirv-tools libspirv-cross-c-shared-dev
   # maths, JSON, command line, text, hashes
   libglm-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev
   # models, images, rays, mesh simplification, subdivision surfaces

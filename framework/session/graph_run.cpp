@@ -108,6 +108,7 @@ void GraphRun::prepare(GraphRun* before, bool keepContents) {
   executorOptions.framesInFlight = inFlight_;
   executorOptions.readback = readback_;
   executorOptions.hostProgress = options_.hostProgress;
+  executorOptions.countOperations = options_.countOperations;
   executorOptions.keepContents = keepContents && sameScene;  // what passes keep was made of the scene
   executor_ = std::make_unique<graph::Executor>(device_, plan_, graph::Registry::global(), *gpuScene_,
                                                 executorOptions, before ? before->executor_.get() : nullptr);

@@ -56,6 +56,7 @@ class GraphRun {
     // Whether what passes make can be read back in the middle of a frame (graph::Executor::observe).
     bool observable = false;
     RaysOn rays = RaysOn::Auto;
+    bool countOperations = false;  // graph::ExecutorOptions::countOperations
   };
   // Binds and compiles. Warnings are added to `messages`; throws Error(BadInput) with every mistake. Device, scene
   // and geometry must outlive the run, which moves the geometry.

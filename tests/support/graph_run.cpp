@@ -23,6 +23,7 @@ GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene, cons
   runOptions.seed = options.seed;
   runOptions.framesInFlight = 2;
   runOptions.rays = options.rays;
+  runOptions.countOperations = options.countOperations;
   runOptions.readback = [&](const graph::BoundGraph& bound) {
     std::vector<std::string> names = options.outputs;
     if (names.empty())

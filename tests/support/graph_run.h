@@ -22,6 +22,7 @@ struct GraphRunOptions {
   std::vector<std::string> outputs;  // names to read back; if empty, all images
   gpu::Device* device = nullptr;     // instead of testDevice()
   session::RaysOn rays = session::RaysOn::Auto;
+  bool countOperations = false;
   bool everyFrame = false;  // read back after every frame: GraphRun::frames[i].outputs
   std::function<void(scene::Frame&)> beforeFrame;
 };

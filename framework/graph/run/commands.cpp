@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "fovea/error.h"
+#include "framework/gpu/shader/operations.h"
 #include "framework/graph/run/execute_state.h"
 #include "framework/scene/frame.h"
 
@@ -151,6 +152,9 @@ static void fillDescriptor(PassInstance& pass, const KernelState& kernel, uint32
     case KernelBinding::Source::Counters:
       d.buffer = {pass.state->counters.handle(), pass.counterOffset,
                   pass.counterValues.size() * sizeof(uint32_t)};
+      return;
+    case KernelBinding::Source::Operations:
+      d.buffer = {pass.state->counters.handle(), pass.operationsOffset, gpu::kOperationsBytes};
       return;
     case KernelBinding::Source::Manual:
       break;

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <deque>
 #include <optional>
+#include <utility>
 
 #include "fovea/error.h"
 #include "framework/base/paths.h"
 #include "framework/gpu/barrier.h"
+#include "framework/gpu/shader/operations.h"
 #include "framework/gpu/timestamps.h"
 #include "framework/graph/pass/guard.h"
 #include "framework/graph/pass/registry.h"
@@ -71,6 +73,7 @@ void Executor::Impl::build(const Registry& registry, Impl* before) {
   state.device = &device;
   state.plan = plan.get();
   state.hostProgress = options.hostProgress;
+  state.countOperations = options.countOperations;
   state.sharedLayout = descriptors.setLayout();
   allocateResources(state);
   if (before && before->state.sharedLayout == state.sharedLayout)
@@ -106,8 +109,11 @@ void Executor::Impl::buildPasses(const Registry& registry) {
           guarded({bound.name, type, plugin}, "its constructor", [&] { return registry.create(type); })));
       PassInstance& pass = *passes.back();
       pass.plugin = plugin;
-      pass.counterOffset = counterBytes;
-      counterBytes += (pass.counterValues.size() * sizeof(uint32_t) + alignment - 1) / alignment * alignment;
+      const auto reserve = [&](uint64_t bytes) {
+        return std::exchange(counterBytes, counterBytes + (bytes + alignment - 1) / alignment * alignment);
+      };
+      pass.counterOffset = reserve(pass.counterValues.size() * sizeof(uint32_t));
+      pass.operationsOffset = reserve(state.countOperations ? gpu::kOperationsBytes : 0);
     }
   }
   state.counters =

@@ -38,6 +38,9 @@ struct ExecutorOptions {
   uint32_t framesInFlight = 2;
   std::vector<std::string> readback;  // graph outputs that a frame may ask to have read back
   HostProgress hostProgress;          // called inside submit()
+  // Whether shaders count their floating-point operations (gpu::countingShader), which makes frames slower. Steps that
+  // run on the host do not.
+  bool countOperations = false;
   // Whether contents are taken over from the executor before, if there is one. If not, only pipelines are, and the next
   // frame is the first one.
   bool keepContents = true;

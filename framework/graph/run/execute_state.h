@@ -60,6 +60,7 @@ struct ExecutorState {
   // Submits the commands recorded so far, waits for them, and begins new ones.
   std::function<VkCommandBuffer()> finishAndBegin;
   std::optional<gpu::TimestampRing> timestamps;
+  bool countOperations = false;  // ExecutorOptions::countOperations
 
   // State of the current frame.
   VkDescriptorSet sharedSet = VK_NULL_HANDLE;
@@ -79,7 +80,7 @@ struct ExecutorState {
 };
 
 struct KernelBinding {
-  enum class Source { Port, Counters, Sampler, Manual } source = Source::Manual;
+  enum class Source { Port, Counters, Operations, Sampler, Manual } source = Source::Manual;
   gpu::ReflectedBinding reflected;
   uint32_t access = kNone;  // index into BoundPass::accesses
   VkSampler sampler = VK_NULL_HANDLE;
@@ -159,6 +160,7 @@ struct PassInstance {
   std::vector<double> counterValues;  // set by the CPU
   std::vector<bool> counterSet;
   uint64_t counterOffset = 0;        // bytes into ExecutorState::counters
+  uint64_t operationsOffset = 0;     // the same, of the number of its operations
   std::vector<HostStaging> staging;  // host passes: one per access
   HostSteps host;                    // steps that run there, of other passes
   bool fresh = true;                 // nothing that it keeps was taken over

@@ -119,6 +119,8 @@ FrameResult FrameSlot::result(std::span<const double> timestamps, const PassInst
       const uint32_t end = s + 1 < recorded.steps.size() ? recorded.steps[s + 1].timestamp : recorded.end;
       stepTiming(timing.steps, pass.labels[step.label]).gpuMs += milliseconds(step.timestamp, end);
     }
+    if (state.countOperations)
+      std::memcpy(&timing.operations, gpuCounters + pass.operationsOffset, sizeof(timing.operations));
     const auto& declared = pass.bound->declaration->counters;
     for (size_t c = 0; c < declared.size(); ++c) {
       uint32_t counted;

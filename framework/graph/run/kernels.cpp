@@ -9,6 +9,7 @@
 #include <set>
 
 #include "fovea/error.h"
+#include "framework/gpu/shader/operations.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/run/execute_state.h"
 
@@ -106,6 +107,10 @@ KernelBinding resolveBinding(PassInstance& pass, const std::string& shader, gpu:
     return resolvePort(pass, shader, b, access);
   KernelBinding binding;
   binding.reflected = b;
+  if (b.name == gpu::kOperationsBinding) {
+    binding.source = KernelBinding::Source::Operations;
+    return binding;
+  }
   if (b.kind == gpu::BindingKind::Sampler) {
     binding.source = KernelBinding::Source::Sampler;
     binding.sampler = samplerByName(*pass.state->device, b.name);
@@ -214,6 +219,7 @@ Kernel PrepareContext::compute(const std::string& shader, const gpu::Defines& de
   desc.onlyInterface = onHost;
   desc.shader = device().shaders().compile(shader, defines);
   checkRays(pass_, *desc.shader, shader);
+  if (pass_.state->countOperations && !onHost) desc.shader = gpu::countingShader(*desc.shader);
   desc.sharedSet = pass_.state->sharedLayout;
   Kernel kernel;
   kernel.state_ = &makeKernel(pass_, shader, stemOf(shader), desc);
@@ -226,6 +232,10 @@ Kernel PrepareContext::graphics(const GraphicsKernelDesc& d) {
   if (!d.fragment.empty()) desc.fragment = device().shaders().compile(d.fragment, d.defines);
   checkRays(pass_, *desc.vertex, d.vertex);
   if (desc.fragment) checkRays(pass_, *desc.fragment, d.fragment);
+  if (pass_.state->countOperations) {
+    desc.vertex = gpu::countingShader(*desc.vertex);
+    if (desc.fragment) desc.fragment = gpu::countingShader(*desc.fragment);
+  }
   desc.sharedSet = pass_.state->sharedLayout;
   for (const std::string& color : d.colors)
     desc.colorFormats.push_back(pass_.desc(pass_.access(color)).format);

@@ -47,6 +47,7 @@ struct PassTiming {
   double gpuMs = 0, cpuMs = 0;
   std::vector<StepTiming> steps;  // those that ran, in the order of their first run; none for a host pass
   CommandCounts commands = {};
+  uint64_t operations = 0;  // that its shaders ran, if they count them (graph::ExecutorOptions)
 };
 
 // What is read back. Light is in the units of the scene, such as W/(sr m^2), as 32-bit floats whatever format passes
