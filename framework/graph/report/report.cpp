@@ -8,6 +8,7 @@
 #include "framework/gpu/format.h"
 #include "framework/graph/compile/compile.h"
 #include "framework/graph/compile/schedule.h"
+#include "framework/graph/report/planned_commands.h"
 #include "framework/graph/report/traffic.h"
 
 namespace fovea::graph {
@@ -106,6 +107,20 @@ void addSteps(std::string& text, const Plan& plan, uint32_t pass) {
     text += fmt::format("      step    {}{}\n", spec.name,
                         spec.shader.empty() ? "" : fmt::format(" ({})", spec.shader));
   }
+}
+
+// Nothing for a plan that was made without shaders, and a dash where only a frame shows the commands.
+std::string commandsText(const Plan& plan, const Level& level, uint32_t pass) {
+  if (plan.steps.empty()) return "";
+  const std::optional<CommandCounts> c = plannedCommands(plan, level, pass);
+  if (!c) return "      commands  -\n";
+  const auto count = [](uint32_t number, const char* what) {
+    return number == 0 ? "" : fmt::format(", {} {}", what, number);
+  };
+  const std::string list = count(c->dispatches, "dispatches") + count(c->indirectDispatches, "indirect") +
+                           count(c->draws, "draws") + count(c->transfers, "transfers") +
+                           count(c->barriers, "barriers");
+  return fmt::format("      commands{}\n", list.empty() ? "  none" : " " + list.substr(1));
 }
 
 // The level of each pass; kNone if it is culled.
@@ -209,7 +224,7 @@ std::string planText(const Plan& plan) {
       text += fmt::format("    pass    {} ({}){}", pass.name, pass.declaration->type,
                           isOnHost(graph, p) ? ", on the host" : "");
       if (pass.view != 0) text += fmt::format(", view {}", graph.views[pass.view]);
-      text += '\n';
+      text += '\n' + commandsText(plan, plan.levels[l], p);
       addSteps(text, plan, p);
     }
   }
@@ -343,6 +358,13 @@ static nlohmann::ordered_json trafficJson(const PassTraffic& t) {
   return {{"pictures", bytes(t.pictures)}, {"others", bytes(t.others)}};
 }
 
+static nlohmann::ordered_json commandsJson(const std::optional<CommandCounts>& c) {
+  if (!c) return nullptr;
+  return {{"dispatches", c->dispatches}, {"indirect_dispatches", c->indirectDispatches},
+          {"draws", c->draws},           {"renderings", c->renderings},
+          {"transfers", c->transfers},   {"barriers", c->barriers}};
+}
+
 std::string planJson(const Plan& plan) {
   using Json = nlohmann::ordered_json;
   const BoundGraph& graph = *plan.graph;
@@ -356,7 +378,8 @@ std::string planJson(const Plan& plan) {
                         {"type", graph.passes[p].declaration->type},
                         {"view", graph.views[graph.passes[p].view]},
                         {"host", isOnHost(graph, p)},
-                        {"traffic", trafficJson(moved[p])}});
+                        {"traffic", trafficJson(moved[p])},
+                        {"commands", commandsJson(plannedCommands(plan, level, p))}});
       if (!plan.steps.empty() && !plan.steps[p].empty()) passes.back()["steps"] = stepsJson(plan, p);
     }
     json["levels"].push_back({{"barriers", batchJson(level.before, graph)}, {"passes", std::move(passes)}});
