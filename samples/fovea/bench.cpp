@@ -15,7 +15,6 @@ void addSuiteOptions(CLI::App& command, bench::SuiteOptions& options) {
   command
       .add_option("SUITE", options.suite,
                   "Suite: a .json file, or a bare name (quick, table1, table2, ..); or `passes` with --graph")
-      ->required()
       ->type_name("");
   command
       .add_option("-o,--output", options.folder,
@@ -95,12 +94,17 @@ void addPassBenchOptions(CLI::App& command, bench::PassBenchOptions& options) {
 
 void addBench(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
-      "bench", "Run a suite of measurements to tables and a report, or measure the passes of a graph");
+      "bench",
+      "Run a suite of measurements to tables and a report, measure the passes of a graph, or (fovea bench\n"
+      "model) say how fast a device could run them");
   auto options = std::make_shared<bench::SuiteOptions>();
   auto passes = std::make_shared<bench::PassBenchOptions>();
   addSuiteOptions(*command, *options);
   addPassBenchOptions(*command, *passes);
-  command->callback([options, passes, &action] {
+  addBenchModel(*command, action);
+  command->callback([command, options, passes, &action] {
+    if (!command->get_subcommands().empty()) return;
+    if (options->suite.empty()) throw CLI::RequiredError("SUITE");
     action = [options, passes] {
       if (passes->graph.empty()) return bench::runSuite(*options);
       if (options->suite != "passes")

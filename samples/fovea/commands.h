@@ -23,5 +23,6 @@ void addBench(CLI::App& program, Action& action);
 void addCompareSequence(CLI::App& program, Action& action);
 void addView(CLI::App& program, Action& action);
 void addSceneExport(CLI::App& sceneCommand, Action& action);
+void addBenchModel(CLI::App& benchCommand, Action& action);
 
 }  // namespace fovea::cli
