@@ -36,7 +36,8 @@ ShadowView orthographic(mat3 axes) {
     hi = max(hi, corner * axes);
   }
   vec3 centre = 0.5 * (lo + hi), half_ = 0.5 * (hi - lo);
-  half_ = max(half_, 1e-3 * max(half_.x, max(half_.y, half_.z))) + 1e-6;  // flat scenes
+  // A flat scene gets a depth of which the bias is more than the rounding of positions.
+  half_ = max(half_, 1e-2 * max(half_.x, max(half_.y, half_.z))) + 1e-6;
   half_.xy *= guarded();
   half_.z *= 1.001;
   mat4 worldToClip = fromRows(vec4(axes[0], -centre.x) / half_.x, vec4(axes[1], -centre.y) / half_.y,
