@@ -71,22 +71,11 @@ float saccadeAt(const Scene& scene, uint64_t index, double framesPerSecond) {
 
 }  // namespace
 
-PixelRays pixelRays(const View& view) {
-  const glm::mat4& projection = view.viewToClip;
-  const glm::mat3 toWorld = glm::transpose(glm::mat3(view.worldToView));
-  const glm::vec2 slope = 1.0f / glm::vec2(projection[0][0], projection[1][1]);
-  const glm::vec2 pixel = 2.0f * slope / glm::max(glm::vec2(view.size), glm::vec2(1));
-  PixelRays rays;
-  rays.eye = view.eye;
-  rays.corner = toWorld * glm::vec3((glm::vec2(projection[2]) - 1.0f) * slope, -1);
-  rays.right = toWorld[0] * pixel.x;
-  rays.down = toWorld[1] * pixel.y;
-  return rays;
-}
-
 glm::vec3 View::rayDirection(glm::vec2 p) const {
-  const PixelRays rays = pixelRays(*this);
-  return rays.corner + p.x * rays.right + p.y * rays.down;
+  const glm::vec2 ndc = 2.0f * p / glm::vec2(size) - 1.0f;  // y down
+  const glm::vec3 inView((ndc.x + viewToClip[2][0]) / viewToClip[0][0],
+                         (ndc.y + viewToClip[2][1]) / viewToClip[1][1], -1.0f);
+  return glm::transpose(glm::mat3(worldToView)) * inView;
 }
 
 Frustum frustumOf(const Lens& lens, bool left) {

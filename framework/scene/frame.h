@@ -8,7 +8,6 @@
 #include <iterator>
 
 #include "fovea/scene.h"
-#include "shaders/records/scene.h"
 
 namespace fovea::scene {
 
@@ -19,9 +18,6 @@ struct Frustum {
 };
 // Frustum of the left or the right eye of a display.
 Frustum frustumOf(const Lens& lens, bool left);
-
-// Of the position within its pixels that the view samples (View::jitter). Also for off-axis projections.
-PixelRays pixelRays(const View& view);
 
 // Makes a view of `size` pixels. If zFar of the camera is 0, it is taken from the scene's bounds.
 View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry,

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fovea/test.h"
-#include "framework/scene/frame.h"
+#include "framework/scene/tables/blocks.h"
 
 namespace fovea::test {
 

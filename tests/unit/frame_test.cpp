@@ -1,5 +1,6 @@
 // Tests views and frames: Vulkan's clip space, rays that agree with it, and gaze and camera over time.
 #include "framework/scene/frame.h"
+#include "framework/scene/tables/blocks.h"
 
 #include <gtest/gtest.h>
 
@@ -192,8 +193,12 @@ TEST(View, JitterLooksBesideThePixelCentres) {
     EXPECT_EQ(v.jitter, now);
     EXPECT_EQ(v.previousJitter, before);
     EXPECT_EQ(v.previousWorldToClip, last.worldToClip);
+    const PixelRays rays = pixelRays(v);
+    EXPECT_EQ(rays.eye, v.eye);
     for (const glm::vec2 pixel : {glm::vec2(0.5f, 0.5f), glm::vec2(31.5f, 20.5f), glm::vec2(63.5f, 47.5f)}) {
       EXPECT_LT(glm::distance(v.rayDirection(pixel), plain.rayDirection(pixel + now)), 1e-6f);
+      const glm::vec3 onDevice = rays.corner + pixel.x * rays.right + pixel.y * rays.down;
+      EXPECT_LT(glm::distance(v.rayDirection(pixel), onDevice), 1e-6f);
       const glm::vec3 ndc = project(v, v.eye + 7.0f * v.rayDirection(pixel));
       EXPECT_NEAR((ndc.x * 0.5f + 0.5f) * 64, pixel.x, 1e-3f);
       EXPECT_NEAR((ndc.y * 0.5f + 0.5f) * 48, pixel.y, 1e-3f);

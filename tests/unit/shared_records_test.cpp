@@ -137,7 +137,10 @@ TEST(SharedRecords, Scene) {
                {AT(ViewBlock, worldToView), AT(ViewBlock, viewToClip), AT(ViewBlock, worldToClip),
                 AT(ViewBlock, clipToWorld), AT(ViewBlock, previousWorldToClip), AT(ViewBlock, eye),
                 AT(ViewBlock, unused0), AT(ViewBlock, gaze), AT(ViewBlock, jitterStep), AT(ViewBlock, size),
-                AT(ViewBlock, inverseSize)});
+                AT(ViewBlock, inverseSize), AT(ViewBlock, rays)});
+  expectLayout(header, "PixelRays", sizeof(PixelRays),
+               {AT(PixelRays, eye), AT(PixelRays, unused0), AT(PixelRays, corner), AT(PixelRays, unused1),
+                AT(PixelRays, right), AT(PixelRays, unused2), AT(PixelRays, down), AT(PixelRays, unused3)});
   expectLayout(
       header, "LightRecord", sizeof(LightRecord),
       {AT(LightRecord, position), AT(LightRecord, type), AT(LightRecord, direction), AT(LightRecord, range),

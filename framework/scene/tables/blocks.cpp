@@ -81,6 +81,19 @@ FrameBlock frameBlock(FrameBlock block, const Frame& frame) {
   return block;
 }
 
+PixelRays pixelRays(const View& view) {
+  const glm::mat4& projection = view.viewToClip;
+  const glm::mat3 toWorld = glm::transpose(glm::mat3(view.worldToView));
+  const glm::vec2 slope = 1.0f / glm::vec2(projection[0][0], projection[1][1]);
+  const glm::vec2 pixel = 2.0f * slope / glm::max(glm::vec2(view.size), glm::vec2(1));
+  PixelRays rays;
+  rays.eye = view.eye;
+  rays.corner = toWorld * glm::vec3((glm::vec2(projection[2]) - 1.0f) * slope, -1);
+  rays.right = toWorld[0] * pixel.x;
+  rays.down = toWorld[1] * pixel.y;
+  return rays;
+}
+
 ViewBlock viewBlock(const View& v) {
   ViewBlock block;
   block.worldToView = v.worldToView;

@@ -14,6 +14,8 @@ namespace fovea::scene {
 FrameBlock sceneBlock(const Scene& scene, const Geometry& geometry, const FullMaterials& full);
 // The same with what the frame adds.
 FrameBlock frameBlock(FrameBlock scene, const Frame& frame);
+// Through the positions within their pixels that the view samples (View::jitter). Also for off-axis projections.
+PixelRays pixelRays(const View& view);
 ViewBlock viewBlock(const View& view);
 // Throws Error(BadInput) if there are more than kMaxLights lights, or if they need more than kMaxShadowLayers shadow maps.
 std::vector<LightRecord> lightRecords(std::span<const Light> lights, float preExposure);
