@@ -39,8 +39,8 @@ graph::ResourceSpec changeBuffer();
 // ---- Bundles ---------------------------------------------------------------------------------------------------
 
 // The bundle `gbuffer`: distance, camera, normal, face, albedo, emission, id, triangle, depth, specular (needs a
-// parameter `materials`). usage: of the images that a pass reads; `distance` is a storage image for all, and
-// `camera` comes with it, as SURFACES in shaders/screen/gbuffer.glsl needs both.
+// parameter `materials`). usage: how a pass reads the images; `distance` is always a storage image, and
+// `camera` is added to it, because SURFACES in shaders/screen/gbuffer.glsl needs both.
 std::vector<graph::MemberSpec> gbufferOutput();
 std::vector<graph::MemberSpec> gbufferMembers(graph::Usage usage,
                                               std::initializer_list<std::string_view> names);

@@ -64,7 +64,7 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, u
 // point. `geometry` must be what flatten() made of Frame::scene. Allocates nothing.
 void moveObjects(const Frame& frame, Geometry& geometry);
 
-// The names of those bindings of set 1 begin with this that only serve rays (shaders/rays).
+// How the names of those bindings of set 1 begin that only rays use (shaders/rays).
 inline constexpr const char* kRayBinding = "ray";
 
 class HostScene;

@@ -31,9 +31,10 @@ const float kSolid = 1.0 - 0.5 / 255.0;  // with this alpha, what is BLEND lets 
 const uint kNothing = 0xffffffffu;
 const float kMaxHalf = 65504.0;
 
-const float kBeside = 1e-3;  // relative; by how much what is just beside a triangle may be nearer or farther
+const float kBeside = 1e-3;  // how much nearer or farther a point just beside a triangle may be, relative
 
-// Weights of b and c where the line through the eye meets the plane of a, b, c (Moeller and Trumbore 1997).
+// Barycentric weights of b and c at the point where the ray meets the plane of the triangle a, b, c (Moeller and
+// Trumbore 1997).
 vec2 barycentrics(vec3 ray, vec3 a, vec3 edgeB, vec3 edgeC) {
   vec3 p = cross(ray, edgeC);
   float determinant = dot(edgeB, p);
@@ -42,7 +43,7 @@ vec2 barycentrics(vec3 ray, vec3 a, vec3 edgeB, vec3 edgeC) {
   return vec2(dot(s, p), dot(ray, cross(s, edgeB))) / determinant;
 }
 
-// Of the nearest point inside the triangle: the rasteriser accepts some pixels whose centre just misses it.
+// The weights of the nearest point inside the triangle: the rasteriser accepts some pixels whose centre just misses it.
 vec2 inside(vec2 weights) {
   weights = max(weights, 0.0);
   return weights / max(weights.x + weights.y, 1.0);
@@ -112,7 +113,7 @@ void main() {
   if (background) emission *= seenThrough;
 #endif
   if (p == ivec2(0)) gbufferCamera.value = view.rays;
-  // Along the ray, up to the plane: what is stored is a point of the ray.
+  // The distance at which the ray meets the plane, as positions are reconstructed on the ray.
   float nearest = distance(position, view.eye), met = distance(a + onPlane.x * edgeB + onPlane.y * edgeC, view.eye);
   gbufferDistance = background ? 0.0 : clamp(met, (1.0 - kBeside) * nearest, (1.0 + kBeside) * nearest);
   gbufferNormal = background ? vec4(vec3(0.0), min(alphas.x, 0.0)) : vec4(normal, alphas.x);

@@ -53,7 +53,7 @@ struct GBuffer {
     }
   }
 
-  // Surfaces that do not lie on the rays of their pixels are moved there, at the same distance from the eye.
+  // Surfaces that do not lie on the rays of their pixels are moved onto them, at the same distance from the eye.
   GBuffer(int w, int h, const scene::PixelRays& rays, const std::function<SurfacePixel(int, int)>& pixel)
       : GBuffer(w, h, pixel) {
     camera = rays;

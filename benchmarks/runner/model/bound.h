@@ -20,12 +20,12 @@ const char* limitName(Limit limit);
 // The longest of the times that the three kinds of work take by themselves, and which of them that is.
 struct Bound {
   double ms = 0;
-  Limit limit = Limit::Nothing;  // of no work
+  Limit limit = Limit::Nothing;  // if there is no work
 };
 Bound boundOf(const Work& work, const Rates& rates);
 
-// The time of the passes that no other queue can shorten: of the longest chain of passes that wait for each other.
-// `ms` are the times of all passes; those that do not run take none.
+// The time of the longest chain of passes that depend on each other, which no second queue can shorten. ms: the times of
+// all passes, by index; 0 for those that do not run.
 double longestChain(const graph::Precedence& order, std::span<const double> ms);
 
 }  // namespace fovea::bench

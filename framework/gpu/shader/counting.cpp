@@ -1,4 +1,4 @@
-// A shader that counts the floating-point operations that it runs.
+// Makes shaders that count the floating-point operations that they execute.
 #include <algorithm>
 #include <map>
 #include <span>
@@ -15,7 +15,7 @@ namespace {
 
 using Module = std::vector<uint32_t>;
 
-// Without what nothing uses, and with what is common computed once. If the optimiser gives up, nothing is changed.
+// The module without unused code and with common expressions computed once, or unchanged if the optimiser fails.
 Module optimized(const Module& spirv) {
   spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
   optimizer.RegisterPerformancePasses();

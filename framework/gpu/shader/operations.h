@@ -16,11 +16,10 @@ struct InstructionBlock {
   uint32_t operations = 0;  // floating-point operations of one run
 };
 
-// The blocks of a module, in its order. The numbers are the least that a device needs: vectors and matrices count their
-// components, a fused multiply-add is 2 operations, a dot product of n components 2n - 1, and a root, a sine, a power
-// of two or a logarithm to that base 1 a component, from which other functions are put together (pow 3, normalize 3 a
-// component). Signs, absolute values, clamps, conversions, comparisons, integers, and what samples textures or traces
-// rays are free.
+// The blocks of a module, in its order. The number of operations is the least that a device needs. Vectors and matrices
+// count their components; a fused multiply-add counts 2, and a dot product of n components 2n - 1. For each component, a
+// root, a sine, a power of two or a logarithm to the base 2 counts 1, pow() and normalize() count 3. Nothing is counted
+// for signs, absolute values, clamps, conversions, comparisons, integers, texture samples and ray queries.
 std::vector<InstructionBlock> instructionBlocks(const std::vector<uint32_t>& spirv);
 
 // The storage buffer of set 0 in which a counting shader adds up its operations: a number of 64 bits, the low word
