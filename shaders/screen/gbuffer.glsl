@@ -5,8 +5,8 @@
 #include "device/language.glsl"
 #include "records/scene.h"
 
-// The direction of the ray through a point of the picture, which is given in pixels. The direction is in world space and
-// not normalised.
+// The direction of the ray through a point of the picture, which is given in pixels. The direction is in world space
+// and not normalised.
 vec3 pixelRay(PixelRays rays, vec2 at) { return rays.corner + at.x * rays.right + at.y * rays.down; }
 
 // The surface at a pixel, from the members `camera` and `distance` of the G-buffer. xyz: position, world space, m; w:
