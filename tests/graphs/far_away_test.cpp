@@ -30,9 +30,12 @@ TEST_P(FarAway, PicturesAreThoseAtTheOrigin) {
   };
   const std::vector<float> here = pictureAt({});
   ASSERT_GT(relativeError(std::vector<float>(here.size(), 0), here), 0.1);  // it shows something
-  for (const glm::dvec3 place :
-       {glm::dvec3(54000.1, 0, 0), glm::dvec3(448262.125, 12.5, -5411932.25), glm::dvec3(1e7, -1e7, 1e7)})
-    EXPECT_LT(relativeError(pictureAt(place), here), 3e-4) << place.x << " " << place.y << " " << place.z;
+  // Where the origin of the scene's coordinates falls on the same point of the scene as here, nothing is rounded
+  // otherwise. Elsewhere the last bits of all positions differ, by which the choice of a few VPLs does.
+  const auto errorAt = [&](glm::dvec3 place) { return relativeError(pictureAt(place), here); };
+  EXPECT_LT(errorAt({1e7, -1e7, 1e7}), 1e-5);
+  EXPECT_LT(errorAt({54000.1, 0, 0}), 1e-3);
+  EXPECT_LT(errorAt({448262.125, 12.5, -5411932.25}), 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Graphs, FarAway, testing::Values("direct", "foveal"), nameOfGraph);
