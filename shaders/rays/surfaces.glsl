@@ -59,7 +59,7 @@ TracedSurface surfaceOf(RayHit hit, vec3 direction) {
   float size = length(face);
   face = size > 0.0 ? face / size : vec3(0.0, 1.0, 0.0);
   vec3 normal = mat3(sceneNormal(triangle.x), sceneNormal(triangle.y), sceneNormal(triangle.z)) * weights;
-  normal = dot(normal, normal) > 1e-24 ? normalize(normal) : face;
+  normal = dot(normal, normal) > 1e-12 ? normalize(normal) : face;
   if (dot(normal, face) < 0.0) normal = -normal;
   bool front = dot(face, direction) < 0.0;
   uint flags = uint(texelOf(sceneMaterials, int(v.material) * kMaterialTexels + kColorTexture).w);

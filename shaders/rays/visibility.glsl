@@ -35,7 +35,7 @@ vec3 visibility(Ray ray, INOUT(uint) rays) {
     if ((flags & (kMaterialBlended | kMaterialTransmits)) == 0u) break;
     vec3 weights = vec3(1.0 - hit.weights.x - hit.weights.y, hit.weights);
     vec3 normal = mat3(sceneNormal(triangle.x), sceneNormal(triangle.y), sceneNormal(triangle.z)) * weights;
-    if (!(dot(normal, normal) > 1e-24)) normal = faceNormal(triangle);
+    if (!(dot(normal, normal) > 1e-12)) normal = faceNormal(triangle);
     share *= transmittance(material, uvAt(triangle, hit.weights), alphaAt(triangle, hit.weights),
                            abs(dot(normalize(normal), direction)));
     if (share == vec3(0.0)) break;

@@ -239,7 +239,7 @@ SurfaceHit surfaceAt(const TriangleVertices& t, float u, float v) {
   s.shadingNormal = s.geometricNormal;
   const glm::vec3 m = t.normals[0] * w + t.normals[1] * u + t.normals[2] * v;
   const float shadingLength = glm::length(m);
-  if (shadingLength > 1e-12f) s.shadingNormal = m / shadingLength;
+  if (shadingLength > 1e-6f) s.shadingNormal = m / shadingLength;
   // In some models normals contradict the winding; the winding decides.
   if (glm::dot(s.shadingNormal, s.geometricNormal) < 0) s.shadingNormal = -s.shadingNormal;
   s.uv = t.uvs[0] * w + t.uvs[1] * u + t.uvs[2] * v;
