@@ -68,6 +68,7 @@ class Flattener {
     for (uint32_t t = 0; t < out_.triangles.size(); ++t)
       if (emits(out_.triangles[t])) out_.emissive.push_back(t);
     out_.stillKey = stillKey(scene_, out_);
+    out_.meanFreePath = meanFreePath();
     return std::move(out_);
   }
 
@@ -251,6 +252,16 @@ class Flattener {
                   "check its keys and the scales and matrices of the nodes above it");
     out_.boundsMin = glm::min(out_.boundsMin, swept.low);
     out_.boundsMax = glm::max(out_.boundsMax, swept.high);
+  }
+
+  float meanFreePath() const {
+    double surface = 0;
+    for (const Triangle& t : out_.triangles) {
+      const glm::dvec3 a(out_.positions[t.v[0]]), b(out_.positions[t.v[1]]), c(out_.positions[t.v[2]]);
+      surface += 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    const glm::dvec3 size = glm::dvec3(out_.boundsMax) - glm::dvec3(out_.boundsMin);
+    return surface > 0 ? float(4 * size.x * size.y * size.z / surface) : 0;
   }
 
   bool emits(const Triangle& t) const {

@@ -10,6 +10,7 @@
 #include "framework/gpu/resources.h"
 #include "passes/acuity.h"
 #include "passes/bundles.h"
+#include "passes/clamp.h"
 #include "passes/deferred/records.h"
 #include "passes/materials.h"
 #include "passes/sizes.h"
@@ -163,6 +164,7 @@ class Deferred : public Pass {
       const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
       Commands commands = ctx.use(pages[page]);
       commands.range("vpls", uint64_t(first) * sizeof(scene::Vpl), uint64_t(inPage) * sizeof(scene::Vpl));
+      commands.constant("clampDistance", clampDistance(ctx));
       if (ctx.has("atlas")) commands.constant("firstSlot", first);
       if (masked_) {
         commands.dispatchIndirect("shade.dispatch");
@@ -190,8 +192,7 @@ class Deferred : public Pass {
                 "`disc` uses 1 / (d^2 + A / pi), the light of a disc of the VPL's area seen along its axis");
     d.parameter("near_light", choice("all", {"none", "map", "all"}),
                 "content of `near_field`, as `light` of pass near-field; with `none` it is left out");
-    d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"),
-                "least distance for the kernel `clamp`; 0 disables the clamp");
+    declareClamp(d, "least distance for the kernel `clamp`; 0 disables the clamp");
     d.parameter("interleave", integer(4, 1, 8),
                 "width n of a block: its n x n pixels divide the VPLs among them; 1, 2, 4 or 8, reduced if a "
                 "subset would hold fewer than 4 VPLs");

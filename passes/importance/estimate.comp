@@ -32,7 +32,10 @@ LARGE_TEXELS(vec4, radiance);
 #endif
 layout(std430) buffer Counters { uint counters[]; };  // rays
 
-layout(push_constant) uniform Constants { uint count; };
+layout(push_constant) uniform Constants {
+  uint count;
+  float luminanceFloor;
+};
 
 shared float seen[kVpls][kHemisphereRays];  // w_i cos_i
 
@@ -89,7 +92,7 @@ void main() {
   for (int k = 0; k < kHemisphereRays; ++k) sum += seen[vpl][k];
   float result = clamp(sum / kHemisphereCosines, 0.0, 1.0);
 #if LUMINANCE
-  if (live) result *= clamp(frame.exposure * texelOf(radiance, int(source.side)).w, 0.0, 1.0);
+  if (live) result *= mix(luminanceFloor, 1.0, clamp(frame.exposure * texelOf(radiance, int(source.side)).w, 0.0, 1.0));
 #endif
   importance[i] = result;
   if (live) atomicAdd(counters[0], uint(kHemisphereRays));

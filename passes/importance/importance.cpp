@@ -47,6 +47,9 @@ PassDeclaration Importance::declaration() {
   d.parameter("luminance", flag(false),
               "multiplies the importance by min(1, exposure * luminance of the VPL's side), so that it also "
               "reflects how bright the VPL is");
+  d.parameter("luminance_floor", real(0, 0, 1),
+              "with `luminance`, the factor of a dark VPL; that of a bright one remains 1, between them it "
+              "is linear");
   d.parameter("rate_candidates", flag(true),
               "if false, the importance of all candidates is 0, for a pass manage with a `placement` that "
               "does not need it; Eq. 1 then keeps new VPLs in their second frame");

@@ -35,7 +35,11 @@ layout(push_constant) uniform Constants {
   uint fadeFrames;
 };
 
-shared vec2 sums[64];
+// The most by which a VPL becomes brighter for the light that the clamp takes. Without a limit, one that lights only
+// what is near would be bright without bounds for whatever else it reaches.
+const float kMostClampGain = 2.0;
+
+shared vec3 sums[64];
 
 struct Map {
   uint slot;
@@ -53,17 +57,18 @@ bool sees(Map map, vec3 point, vec3 face) {
   return vplSees(stored, dot(tilt, local), len, len + local.z, tilt, texel, map.layout_.size, 1.0);
 }
 
-// Sum of the terms of p_l, and of their squares.
-vec2 seenSum(float area, uint slot, uint lane) {
+// Sum of the terms of p_l, of their squares, and of the terms without the clamp.
+vec3 seenSum(float area, uint slot, uint lane) {
   Vpl vpl = loadVpl(placed, slot);
   Map map = Map(slot, vpl.position, orthonormalFrame(vpl.normal), atlasLayout(imageSize(atlas)));
-  vec2 sum = vec2(0.0);
+  vec3 sum = vec3(0.0);
   uint bits = 0u, turn = 0u;
   for (uint i = lane; i < points; i += 64u, ++turn) {
     float p = landing(i, vpl.position, vpl.normal, area, nearest);
     EyePathStart from = loadStart(screen, i);
     bool seen_ = p > 0.0 && sees(map, from.position, from.face);
-    sum += seen_ ? vec2(p, p * p) : vec2(0.0);
+    float free_ = nearest > 0.0 ? landing(i, vpl.position, vpl.normal, area, 0.0) : p;
+    sum += seen_ ? vec3(p, p * p, free_) : vec3(0.0);
     bits |= seen_ ? 1u << (turn & 31u) : 0u;
     if ((turn & 31u) == 31u || i + 64u >= points) {
       seen.words[(slot * 64u + lane) * laneWords(points) + turn / 32u] = bits;
@@ -81,16 +86,16 @@ void main() {
   // Also excludes VPLs that pass vpl-origins has emptied because of a value that is not finite.
   bool wanted = inside && vpl.life > 0.0 && loadVpl(placed, within).area > 0.0;
   VoxelGrid grid = voxelsGrid();
-  sums[lane] = wanted ? seenSum(grid.cell * grid.cell, slot, lane) : vec2(0.0);
+  sums[lane] = wanted ? seenSum(grid.cell * grid.cell, slot, lane) : vec3(0.0);
   barrier();
   for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree, so that the order is always the same
     if (lane < half_) sums[lane] += sums[lane + half_];
     barrier();
   }
   if (lane != 0u || !inside) return;
-  float sum = sums[0].x;
+  seenFrom.list[slot] = sums[0].y > 0.0 ? sums[0].x * sums[0].x / sums[0].y : 0.0;
+  float sum = max(sums[0].x, sums[0].z / kMostClampGain);
   densities.list[slot] = sum / float(points);
-  seenFrom.list[slot] = sums[0].y > 0.0 ? sum * sum / sums[0].y : 0.0;
   int side = int(vpl.side);
   float light = side >= 0 && side < texelsIn(radiance) ? texelOf(radiance, side).w : 0.0;
   if (light > 0.0 && siteKind(light, luminanceOf(loadSide(uint(side)).emission)) == kShining) light = -light;

@@ -6,6 +6,7 @@
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
+#include "passes/clamp.h"
 #include "passes/regions.h"
 #include "passes/vpl-intensity/records.h"
 #include "shaders/records/eye_paths.h"
@@ -68,6 +69,12 @@ PassDeclaration declareIntensity(const char* type, const char* doc) {
               "region in which the eye paths start, as in pass candidates; `area` starts none");
   d.parameter("points", integer(2048, 64, 4096),
               "screen points over which a density is averaged; `area` needs none");
+  d.parameter(
+      "kernel", choice("disc", {"disc", "clamp"}),
+      "kernel with which the VPLs will be shaded, as in pass deferred; with `clamp`, `importance-area` "
+      "returns to the mean over the region the light that the clamp takes, though no VPL becomes more than "
+      "twice as bright for it; the other strategies do not depend on the kernel");
+  declareClamp(d, "clamp distance of the kernel `clamp`");
   d.counter("alive", "slots that hold a VPL");
   return d;
 }
@@ -258,11 +265,6 @@ PassDeclaration IntensityImportanceArea::declaration() {
       "fade_frames", integer(0, 0, 1000),
       "frames over which the share assigned to a new VPL grows from nothing to its own, while its neighbours "
       "give it up gradually to avoid popping");
-  d.parameter(
-      "kernel", choice("disc", {"disc", "clamp"}),
-      "kernel with which the VPLs will be shaded, as in pass deferred; with `clamp` the mean over the region "
-      "regains the light that the clamp removes");
-  d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "clamp distance of the kernel `clamp`");
   d.parameter("normal_weight", real(0.5, 0, 100), kNormalWeight);
   d.output("worth", buffer("float", 4, countOf("vpls")), Usage::StorageWrite,
            "how much each VPL matters, in [0, 1), for pass manage of the next frame");
@@ -300,8 +302,7 @@ void IntensityImportanceArea::addSteps(PassDeclaration& d) {
              .define("CHANGE", wired("change"))
              .constant("nearest",
                        [](const RecordContext& ctx) {
-                         const Parameters& p = ctx.parameters();
-                         return p.text("kernel") == "clamp" ? float(p.real("clamp_distance")) : 0.0f;
+                         return ctx.parameters().text("kernel") == "clamp" ? clampDistance(ctx) : 0.0f;
                        }),
          countOf("vpls"));
   stepOverVpls(d, "vpl-intensity/median.comp").define("SHARED", 1).groups(1);

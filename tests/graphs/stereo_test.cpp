@@ -125,7 +125,8 @@ TEST(Stereo, FoveatedSecondEyeEqualsAllOfItShaded) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "stereo_whole.json";
   std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/stereo.json",
     "passes": {"whole": {"type": "deferred", "inputs": {"gbuffer": "right.gbuffer", "vpls": "vpl-intensity.emitters", "atlas": "shadow-atlas"},
-                         "params": {"kernel": "$kernel", "clamp_distance": "$clamp_distance", "interleave": "$interleave"}}},
+                         "params": {"kernel": "$kernel", "clamp_distance": "$clamp_distance",
+                                    "clamp_unit": "$clamp_unit", "interleave": "$interleave"}}},
     "outputs": {"whole": "whole.indirect"}})";
   GraphRunOptions options;
   options.size = {kSide, kSide};
@@ -191,7 +192,8 @@ TEST_P(BuiltinStereo, SecondEyeEqualsAllOfItShaded) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "ir_stereo_whole.json";
   std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/ir_stereo.json",
     "passes": {"whole": {"type": "deferred", "inputs": {"gbuffer": "right.gbuffer", "vpls": "emit", "atlas": "shadow-atlas"},
-                         "params": {"kernel": "$kernel", "clamp_distance": "$clamp_distance", "interleave": "$interleave"}}},
+                         "params": {"kernel": "$kernel", "clamp_distance": "$clamp_distance",
+                                    "clamp_unit": "$clamp_unit", "interleave": "$interleave"}}},
     "outputs": {"whole": "whole.indirect"}})";
   const GraphRun both = run(file.string(), scene::builtin(GetParam()), "", 1);
   const auto image = toFloats(both.outputs.at("indirect_right")), want = toFloats(both.outputs.at("whole"));

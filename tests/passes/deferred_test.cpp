@@ -8,6 +8,7 @@
 
 #include "fovea/error.h"
 #include "tests/passes/deferred_scenes.h"
+#include "tests/support/shapes.h"
 
 namespace fovea::test {
 namespace {
@@ -24,7 +25,7 @@ std::vector<float> run(PassTest& test, const GBuffer& g, const std::vector<Vpl>&
 
 // ---- One VPL over a plane: E = I cos_s cos_l K(d) with cos = h / d ----------------------------------------
 
-enum class Case { Clamped, Unclamped, Disc };
+enum class Case { Clamped, ClampedInMeanFreePaths, Unclamped, Disc };
 
 class OneVpl : public testing::TestWithParam<Case> {};
 
@@ -34,6 +35,12 @@ TEST_P(OneVpl, EqualsTheClosedForm) {
   PassTest test("deferred");
   test.param("kernel", GetParam() == Case::Disc ? "disc" : "clamp");
   if (GetParam() == Case::Unclamped) test.param("clamp_distance", 0.0);
+  if (GetParam() == Case::ClampedInMeanFreePaths) {  // of a cube with an edge of 3 m, 4 * 27 / 54 m
+    scene::Scene cube;
+    const uint32_t m = addMaterial(cube, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
+    addRoom(cube, walls, 1.5f);
+    test.scene(cube).param("clamp_unit", "mean-free-paths").param("clamp_distance", 0.75);
+  }
   const auto image =
       run(test, g, {makeVpl({0.3f, float(height), -0.1f}, {0, -1, 0}, {10, 20, 30}, float(area))}, 4);
   const auto indirect = test.floats("indirect");
@@ -52,7 +59,9 @@ TEST_P(OneVpl, EqualsTheClosedForm) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, OneVpl, testing::Values(Case::Clamped, Case::Unclamped, Case::Disc));
+INSTANTIATE_TEST_SUITE_P(Kernels, OneVpl,
+                         testing::Values(Case::Clamped, Case::ClampedInMeanFreePaths, Case::Unclamped,
+                                         Case::Disc));
 
 // The surface behind the VPL and the one that faces away from it get no light.
 TEST(Deferred, VplsShineToTheirSideOnly) {

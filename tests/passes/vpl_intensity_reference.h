@@ -174,7 +174,8 @@ inline double seenTerm(const Seen& s, const scene::VplState& vpl, const Maps& ma
 }
 
 // What the region gets from each slot per area and radiosity, 1/m^2. areas are those of the discs with which the VPLs
-// shine; if there are none, those of a cell. seenFrom is the number of points that each value is an average of.
+// shine; if there are none, those of a cell. With a clamp it is at least half of what the region gets without.
+// seenFrom is the number of points that each value is an average of.
 inline std::vector<double> seenDensities(const Room& room, const std::vector<scene::VplState>& vpls,
                                          const std::vector<Seen>& points, const Maps& maps, float clamp = 0,
                                          const std::vector<double>* areas = nullptr,
@@ -182,14 +183,15 @@ inline std::vector<double> seenDensities(const Room& room, const std::vector<sce
   const float cell = room.voxels.grid.cell;
   std::vector<double> result;
   for (size_t slot = 0; slot < vpls.size(); ++slot) {
-    double sum = 0, squares = 0;
+    double sum = 0, squares = 0, open = 0;
     for (const Seen& s : points) {
       const double area = areas ? (*areas)[slot] : double(cell) * cell;
       const double term = seenTerm(s, vpls[slot], maps, slot, area, clamp);
       sum += term;
       squares += term * term;
+      if (clamp > 0) open += seenTerm(s, vpls[slot], maps, slot, area, 0);
     }
-    result.push_back(sum / double(points.size()));
+    result.push_back(std::max(sum, open / 2) / double(points.size()));
     if (seenFrom) seenFrom->push_back(squares > 0 ? sum * sum / squares : 0);
   }
   return result;

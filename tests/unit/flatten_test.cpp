@@ -1,6 +1,7 @@
 // Tests flatten(): world space, static before dynamic geometry, and front faces that remain front faces.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "framework/scene/scene.h"
@@ -53,6 +54,22 @@ TEST(Flatten, ListsWhatEmits) {
   EXPECT_EQ(flatten(s).emissive, (std::vector<uint32_t>{0, 2, 3}));
   s.materials[1].emission = {};
   EXPECT_TRUE(flatten(s).emissive.empty());
+}
+
+// A tetrahedron in the corner of its bounds, whose edges there are 1, 2 and 4 m: 4 V / S with V = 8 m^3.
+TEST(Flatten, MeanFreePath) {
+  Scene s = triangleScene();
+  EXPECT_EQ(flatten(s).meanFreePath, 0);
+  Primitive& p = s.meshes[0].primitives[0];
+  p.positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 4}};
+  p.normals.assign(4, {0, 0, 1});
+  p.uvs.assign(4, glm::vec2(0));
+  p.indices = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 2, 3};
+  s.nodes.push_back(meshNode());
+  const double surface = 1 + 4 + 2 + std::sqrt(1.0 + 16 + 4);  // de Gua's theorem
+  EXPECT_NEAR(flatten(s).meanFreePath, 4 * 8 / surface, 1e-5);
+  s.nodes[0].scale = glm::vec3(0.1f);
+  EXPECT_NEAR(flatten(s).meanFreePath, 0.4 * 8 / surface, 1e-6);
 }
 
 TEST(Flatten, AppliesTheWholeChainOfTransforms) {

@@ -355,6 +355,8 @@ struct Geometry {
   std::vector<Triangle> lightTriangles;
   uint32_t staticLightTriangles = 0;
   glm::vec3 boundsMin{std::numeric_limits<float>::max()}, boundsMax{std::numeric_limits<float>::lowest()};
+  // 4 V / S with the volume V of the bounds and the area S of all triangles at time 0, m: the mean chord of a room.
+  float meanFreePath = 0;
   bool empty() const { return triangles.empty(); }
   // Vertices [0, staticVertices()) never move.
   uint32_t staticVertices() const {
