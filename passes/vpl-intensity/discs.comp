@@ -1,7 +1,7 @@
 // Strategy `importance-area` with the kernel `disc`, second to last step: the disc of a VPL's own area sends less
 // light to nearby points of the region than the disc of a voxel would. Finds how much brighter the VPL must be to
 // make up for that. One work group per VPL. NEAR 1: no disc is smaller than `spread`, for which pass near-field
-// compensates; the paths were assigned without that light. The factor is then at most kMostNearGain, as a VPL that
+// compensates; the paths were assigned without that light. The factor is then at most kMostGain, as a VPL that
 // lights only a crack would be a bright spot there. What this cuts off is lost.
 #include "device/texels.glsl"
 #include "scene/scene.glsl"
@@ -24,8 +24,6 @@ layout(push_constant) uniform Constants {
   uint points;
   float areaCap;
 };
-
-const float kMostNearGain = 2.0;
 
 shared float sums[64];
 
@@ -53,6 +51,6 @@ void main() {
     barrier();
   }
   float after = sums[0] / float(points);
-  float most = NEAR != 0 ? kMostNearGain : areaCap;
+  float most = NEAR != 0 ? kMostGain : areaCap;
   if (lane == 0u && inside) gains.list[slot] = after > 0.0 ? min(before / after, most) : 1.0;
 }

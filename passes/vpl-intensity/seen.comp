@@ -35,10 +35,6 @@ layout(push_constant) uniform Constants {
   uint fadeFrames;
 };
 
-// The most by which a VPL becomes brighter for the light that the clamp takes. Without a limit, one that lights only
-// what is near would be bright without bounds for whatever else it reaches.
-const float kMostClampGain = 2.0;
-
 shared vec3 sums[64];
 
 struct Map {
@@ -94,7 +90,7 @@ void main() {
   }
   if (lane != 0u || !inside) return;
   seenFrom.list[slot] = sums[0].y > 0.0 ? sums[0].x * sums[0].x / sums[0].y : 0.0;
-  float sum = max(sums[0].x, sums[0].z / kMostClampGain);
+  float sum = max(sums[0].x, sums[0].z / kMostGain);
   densities.list[slot] = sum / float(points);
   int side = int(vpl.side);
   float light = side >= 0 && side < texelsIn(radiance) ? texelOf(radiance, side).w : 0.0;

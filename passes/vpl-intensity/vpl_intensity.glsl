@@ -47,6 +47,10 @@ float partKept(float p, float least, float seenFrom) {
   return min(min(p / max(least, 1e-30), seenFrom / kEnoughPoints), 1.0);
 }
 
+// The largest factor by which a VPL becomes brighter to make up for light that its kernel does not send to nearby
+// surfaces. Without a limit, a VPL that lights only nearby surfaces would be far too bright for everything else.
+const float kMostGain = 2.0;
+
 // Each of 64 invocations looks at every 64th point, and words of 32 bits say from which of them the VPL is seen.
 uint laneWords(uint points) { return (points + 2047u) / 2048u; }
 

@@ -30,8 +30,8 @@ TEST_P(FarAway, PicturesAreThoseAtTheOrigin) {
   };
   const std::vector<float> here = pictureAt({});
   ASSERT_GT(relativeError(std::vector<float>(here.size(), 0), here), 0.1);  // it shows something
-  // Where the origin of the scene's coordinates falls on the same point of the scene as here, nothing is rounded
-  // otherwise. Elsewhere the last bits of all positions differ, by which the choice of a few VPLs does.
+  // At the first place, coordinates relative to the scene's origin are the same as here. At the others they are rounded
+  // differently in their last bits, and a few VPLs are chosen differently for that reason.
   const auto errorAt = [&](glm::dvec3 place) { return relativeError(pictureAt(place), here); };
   EXPECT_LT(errorAt({1e7, -1e7, 1e7}), 1e-5);
   EXPECT_LT(errorAt({54000.1, 0, 0}), 1e-3);

@@ -56,7 +56,8 @@ TEST(Flatten, ListsWhatEmits) {
   EXPECT_TRUE(flatten(s).emissive.empty());
 }
 
-// A tetrahedron in the corner of its bounds, whose edges there are 1, 2 and 4 m: 4 V / S with V = 8 m^3.
+// A tetrahedron with three perpendicular edges of 1, 2 and 4 m. Its bounds have the volume V = 8 m^3, and its four faces
+// the area S, so that the mean free path is 4 V / S.
 TEST(Flatten, MeanFreePath) {
   Scene s = triangleScene();
   EXPECT_EQ(flatten(s).meanFreePath, 0);
