@@ -44,16 +44,25 @@ Material loadMaterial(uint material) {
   return Material(vec3(color), color.a, vec3(emission), emission.a, (flags & kMaterialDoubleSided) != 0u);
 }
 
-// The texel of a texture of `size` texels in a row that coordinate `i` stands for. wrap: 0 repeats, kWrapClamp,
-// kWrapMirror. Divides floats, as a CPU device divides integers one lane at a time, and twice because the first
-// quotient may be rounded.
+// After how many texels a texture of `size` texels in a row repeats. wrap: 0 repeats, kWrapClamp, kWrapMirror.
+int texelPeriod(int size, uint wrap) { return wrap == kWrapMirror ? 2 * size : size; }
+
+// Coordinate `i` of a texel, moved by whole periods to [0, period); kWrapClamp leaves it as it is. Divides floats, as a
+// CPU device divides integers one lane at a time, and twice because the first quotient may be rounded.
+int withinPeriod(int i, int size, uint wrap) {
+  if (wrap == kWrapClamp) return i;
+  int period = texelPeriod(size, wrap);
+  float inverse = 1.0 / float(period);
+  i -= period * int(floor((float(i) + 0.5) * inverse));
+  return i - period * int(floor((float(i) + 0.5) * inverse));
+}
+
+// The texel that coordinate `i` stands for. i: from withinPeriod(), or the one after it.
 int wrapTexel(int i, int size, uint wrap) {
   if (wrap == kWrapClamp) return clamp(i, 0, size - 1);
-  int period = wrap == kWrapMirror ? 2 * size : size;
-  float inverse = 1.0 / float(period);
-  int r = i - period * int(floor((float(i) + 0.5) * inverse));
-  r -= period * int(floor((float(r) + 0.5) * inverse));
-  return r < size ? r : period - 1 - r;
+  int period = texelPeriod(size, wrap);
+  if (i == period) return 0;
+  return i < size ? i : period - 1 - i;
 }
 
 // A texture at `uv`, as linear light: at level 0, the nearest texel or four, decoded and then interpolated. texel: the
@@ -69,16 +78,19 @@ vec4 sampleSceneTexture(int texel, vec2 uv) {
   if (!nearest) p -= 0.5;
   p = mix(clamp(p, vec2(-1e9), vec2(1e9)), vec2(0.0), isnan(p));
   vec2 base = floor(p);
-  vec2 f = p - base;
-  ivec2 size = ivec2(extent), i = ivec2(base), corner = ivec2(place.y, place.z);
+  vec2 f = nearest ? vec2(0.0) : p - base;
+  ivec2 size = ivec2(extent), corner = ivec2(place.y, place.z), first = ivec2(base);
+  first = ivec2(withinPeriod(first.x, size.x, wrapU), withinPeriod(first.y, size.y, wrapV));
   bool linear = (flags & kTextureLinear) != 0u;
-  ivec2 a = corner + ivec2(wrapTexel(i.x, size.x, wrapU), wrapTexel(i.y, size.y, wrapV));
-  if (nearest) return sceneTexel(ivec3(a, int(place.x)), linear);
-  ivec2 b = corner + ivec2(wrapTexel(i.x + 1, size.x, wrapU), wrapTexel(i.y + 1, size.y, wrapV));
-  int page = int(place.x);
-  vec4 top = mix(sceneTexel(ivec3(a, page), linear), sceneTexel(ivec3(b.x, a.y, page), linear), f.x);
-  vec4 bottom = mix(sceneTexel(ivec3(a.x, b.y, page), linear), sceneTexel(ivec3(b, page), linear), f.x);
-  return mix(top, bottom, f.y);
+  // A loop, because drivers insert these functions wherever a shader reads a texture.
+  vec4 sum = vec4(0.0);
+  for (int tap = 0; tap < (nearest ? 1 : 4); ++tap) {
+    ivec2 offset = ivec2(tap & 1, tap >> 1), i = first + offset;
+    ivec2 at = corner + ivec2(wrapTexel(i.x, size.x, wrapU), wrapTexel(i.y, size.y, wrapV));
+    vec2 weight = mix(1.0 - f, f, vec2(offset));
+    sum += weight.x * weight.y * sceneTexel(ivec3(at, int(place.x)), linear);
+  }
+  return sum;
 }
 
 // A material at `uv`, with its textures. rgb: diffuse reflectance, a: alpha.
