@@ -24,7 +24,8 @@ scene::Scene movingScene() {
 }
 
 class DeviceRaysInGraphs : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Materials, DeviceRaysInGraphs, testing::Values("diffuse", "full"));
+INSTANTIATE_TEST_SUITE_P(Materials, DeviceRaysInGraphs, testing::Values("diffuse"));
+INSTANTIATE_TEST_SUITE_P(LongMaterials, DeviceRaysInGraphs, testing::Values("full"));
 
 int countDifferent(const graph::OutputData& wanted, const graph::OutputData& given) {
   const std::vector<float> want = toFloats(wanted), got = toFloats(given);

@@ -134,7 +134,7 @@ TEST(Transparency, MeansOverFramesAreThoseOfThePathTracer) {
 
 // The smoothed picture of `foveal_view` is that mean, of direct and indirect light, and holds still. Light that comes
 // through the green pane is green, on its way to surfaces, too.
-TEST(Transparency, TheSmoothedPictureIsThatOfThePathTracer) {
+TEST(LongTransparency, TheSmoothedPictureIsThatOfThePathTracer) {
   constexpr int kSide = 96, kFrames = 8;  // after 24 others
   for (const float lampAt : {1.1f, 3.5f}) {
     const scene::Scene s = panes(lampAt);

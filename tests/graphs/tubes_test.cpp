@@ -74,7 +74,7 @@ std::vector<double> lightOfParts(const std::string& graph, uint32_t seed, uint32
 }
 
 // With rays aimed at any point of a tube, a seed is off by up to 0.17.
-TEST(Tubes, WallsAndCeilingKeepTheirLight) {
+TEST(LongTubes, WallsAndCeilingKeepTheirLight) {
   const std::vector<double> want = lightOfParts("reference", 1, 1, {"spp=2048"});
   constexpr uint32_t kSeeds = 8;
   std::vector<double> got(kParts.size());

@@ -14,8 +14,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
 from program import CliTest  # noqa: E402
 
 FETCH = pathlib.Path(__file__).with_name("lavapipe.sh")
-# Of the tests of rays and of all passes that trace them, those that are quick.
-QUICK = "DeviceRays*:Passes/RaysBoth*:DeviceEmitters*"
+# Tests of rays, and of all passes that trace them. Compiling the shaders of passes takes minutes.
+RAYS = "DeviceRays*:DeviceEmitters*"
+PASSES = "Passes/RaysBoth*"
 OTHERS = "Rays/*:ContactRaysBoth*:NearFieldBoth*:Mirrors*:LongDeviceRays*"
 
 
@@ -36,9 +37,11 @@ class OnLavapipe(CliTest):
 
 
 class RayQueries(OnLavapipe):
-    def test_rays_and_passes(self):
-        self.device_tests(QUICK)
+    def test_rays(self):
+        self.device_tests(RAYS)
 
+
+class LongRayQueryPictures(OnLavapipe):
     def picture(self, name, seed, *options):
         self.succeeds("render", "foveal", "--scene", "cornellbox_moving", "--size", "96x96", "--warmup", "6",
                       "--seed", seed, "--quiet", "-o", name, *options, env=self.driver)
@@ -58,8 +61,13 @@ class RayQueries(OnLavapipe):
         self.assertLess(self.difference(host, queries), 1.2 * noise)
 
 
+class LongRayQueryPasses(OnLavapipe):
+    def test_find_what_they_find_on_the_host(self):
+        self.device_tests(PASSES)
+
+
 class LongRayQueries(OnLavapipe):
-    def test_rays_and_passes(self):
+    def test_other_tests_with_rays(self):
         self.device_tests(OTHERS)
 
 
