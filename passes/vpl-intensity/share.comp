@@ -92,8 +92,6 @@ void give(uint vpl, uint path, float part) {
 struct Path {
   vec3 position, normal;
   float kind;               // kind of its end, 0 if it hits nothing
-  uint bit;                 // bit of its start in a VPL's words of `seen`
-  int word;                 // the word that holds it
   float best, bestWhole;
   uint owner, whole;        // nearest of all VPLs, and of those that are seen well
   uint rank, rankWhole;
@@ -101,26 +99,23 @@ struct Path {
 
 Path pathAt(uint path) {
   bool inside = path < tried;
-  uint point = path % points, turn = point >> 6u, within = inside ? path : 0u;
+  uint within = inside ? path : 0u;
   vec3 position = endOf(within).position, normal = endOf(within).normal;
   float kind = endOf(within).kind;
 #if TRACED
   if (kind == kGlowing) kind = kUnlit;  // voxels know no light of emissive surfaces
 #endif
-  return Path(position, normal, inside && kind > 0.0 ? kind : 0.0, 1u << (turn & 31u),
-              int((point & 63u) * laneWords(points) + (turn >> 5u)), 1e38, 1e38, kNoSide, kNoSide, 0u, 0u);
+  return Path(position, normal, inside && kind > 0.0 ? kind : 0.0, 1e38, 1e38, kNoSide, kNoSide, 0u, 0u);
 }
 
-void offer(inout Path p, uint vpl, VplSite site, float lambda, int words) {
+// ranked: kSeen if the start of the path sees the VPL, else 0.
+void offer(inout Path p, uint vpl, VplSite site, float lambda, uint ranked) {
   vec3 d = site.position - p.position;
   bool thin = site.handicap <= kThinSite;
   float handicap = thin ? kThinSite - site.handicap : site.handicap;
   precise float cost = dot(d, d) + lambda * (1.0 - dot(p.normal, site.normal)) + handicap;
   float kind = site.light < 0.0 ? kShining : siteKind(site.light, 0.0);
-  uint its = kind != p.kind ? 0u : kind == kShining ? kShines + kSameKind : kSameKind;
-#if TRACED
-  its += (texelOf(seen, int(vpl) * words + p.word).r & p.bit) != 0u ? kSeen : 0u;
-#endif
+  uint its = ranked + (kind != p.kind ? 0u : kind == kShining ? kShines + kSameKind : kSameKind);
   bool takes = handicap >= 0.0;
   bool nearer = takes && (its > p.rank || (its == p.rank && cost < p.best));
   bool nearerWhole = takes && !thin && (its > p.rankWhole || (its == p.rankWhole && cost < p.bestWhole));
@@ -144,16 +139,22 @@ void finish(Path p, uint path) {
   give(p.whole, path, 1.0 - part);
 }
 
-// An invocation compares several paths with each VPL, as on a CPU device loading the VPL is most of the work.
+// An invocation compares several paths with each VPL, as on a CPU device loading the VPL is most of the work. They start
+// from the same point, so that it also looks up once whether that sees the VPL.
 void main() {
   float lambda = normalWeight(voxelsGrid(), normalShare, totals.value.areaLow, totals.value.areaHigh);
-  uint first = gl_WorkGroupID.x * gl_WorkGroupSize.x * kPaths + gl_LocalInvocationIndex;
-  int words = 64 * int(laneWords(points));
+  uint point = gl_GlobalInvocationID.x % points, turn = point >> 6u, bit = 1u << (turn & 31u);
+  uint first = gl_GlobalInvocationID.x / points * points * kPaths + point;
+  int words = 64 * int(laneWords(points)), word = int((point & 63u) * laneWords(points) + (turn >> 5u));
   Path paths[kPaths];
-  for (uint k = 0u; k < kPaths; ++k) paths[k] = pathAt(first + k * gl_WorkGroupSize.x);
+  for (uint k = 0u; k < kPaths; ++k) paths[k] = pathAt(first + k * points);
   for (uint i = 0u; i < vplCount; ++i) {
     VplSite site = loadSite(sites, i);
-    for (uint k = 0u; k < kPaths; ++k) offer(paths[k], i, site, lambda, words);
+    uint ranked = 0u;
+#if TRACED
+    if ((texelOf(seen, int(i) * words + word).r & bit) != 0u) ranked = kSeen;
+#endif
+    for (uint k = 0u; k < kPaths; ++k) offer(paths[k], i, site, lambda, ranked);
   }
-  for (uint k = 0u; k < kPaths; ++k) finish(paths[k], first + k * gl_WorkGroupSize.x);
+  for (uint k = 0u; k < kPaths; ++k) finish(paths[k], first + k * points);
 }

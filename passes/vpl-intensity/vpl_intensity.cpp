@@ -312,7 +312,7 @@ void IntensityImportanceArea::addSteps(PassDeclaration& d) {
       .define("PATHS", kSharedPaths)
       .constant("tried", tried)
       .constant("normalShare", normalShare)
-      .threads(ceilDiv(tried, kSharedPaths));
+      .threads(ceilDiv(tried, kSharedPaths * parameter("points")) * parameter("points"));
   addPdf(d, tried, true);
   stepOverVpls(d, "vpl-intensity/worth.comp").define("TRACED", traced).groups(1);
   inRows(stepOverVpls(d, "vpl-intensity/discs.comp").when(discs).define("NEAR", wired("spread")),
