@@ -139,8 +139,8 @@ void finish(Path p, uint path) {
   give(p.whole, path, 1.0 - part);
 }
 
-// An invocation compares several paths with each VPL, as on a CPU device loading the VPL is most of the work. They start
-// from the same point, so that it also looks up once whether that sees the VPL.
+// An invocation compares several paths with each VPL, because on a CPU device most of the time goes into loading VPLs.
+// These paths start from the same point, so that one look-up tells for all of them whether the point sees the VPL.
 void main() {
   float lambda = normalWeight(voxelsGrid(), normalShare, totals.value.areaLow, totals.value.areaHigh);
   uint point = gl_GlobalInvocationID.x % points, turn = point >> 6u, bit = 1u << (turn & 31u);

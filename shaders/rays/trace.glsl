@@ -40,7 +40,7 @@ bool solidAt(uint material, vec2 uv, float alpha) {
 #if RAY_PASSAGE
   if ((uint(texelOf(sceneMaterials, first + kColorTexture).w) & kMaterialBlended) != 0u) return true;
 #endif
-  return alpha * materialReflectance(material, uv).a >= cutoff;
+  return alpha * materialAlpha(material, uv) >= cutoff;
 }
 
 // Texture coordinates, and alpha of the vertex colours, at a point of a triangle. weights: barycentric, of the second

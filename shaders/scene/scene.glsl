@@ -44,11 +44,12 @@ Material loadMaterial(uint material) {
   return Material(vec3(color), color.a, vec3(emission), emission.a, (flags & kMaterialDoubleSided) != 0u);
 }
 
-// After how many texels a texture of `size` texels in a row repeats. wrap: 0 repeats, kWrapClamp, kWrapMirror.
+// The number of texels after which a texture repeats along an axis. size: of the texture along it, texels; wrap: 0
+// repeats the texture, kWrapClamp and kWrapMirror are the other ways.
 int texelPeriod(int size, uint wrap) { return wrap == kWrapMirror ? 2 * size : size; }
 
-// Coordinate `i` of a texel, moved by whole periods to [0, period); kWrapClamp leaves it as it is. Divides floats, as a
-// CPU device divides integers one lane at a time, and twice because the first quotient may be rounded.
+// The coordinate `i` of a texel moved by whole periods into [0, period), but unchanged for kWrapClamp. The quotient is
+// one of floats, as CPU devices divide integers lane by lane. A second step corrects the rounding of the first.
 int withinPeriod(int i, int size, uint wrap) {
   if (wrap == kWrapClamp) return i;
   int period = texelPeriod(size, wrap);
@@ -57,7 +58,7 @@ int withinPeriod(int i, int size, uint wrap) {
   return i - period * int(floor((float(i) + 0.5) * inverse));
 }
 
-// The texel that coordinate `i` stands for. i: from withinPeriod(), or the one after it.
+// The texel that is read at coordinate `i`, which is a result of withinPeriod() or larger than it by one.
 int wrapTexel(int i, int size, uint wrap) {
   if (wrap == kWrapClamp) return clamp(i, 0, size - 1);
   int period = texelPeriod(size, wrap);
@@ -65,38 +66,69 @@ int wrapTexel(int i, int size, uint wrap) {
   return i < size ? i : period - 1 - i;
 }
 
-// A texture at `uv`, as linear light: at level 0, the nearest texel or four, decoded and then interpolated. texel: the
-// first of the three texels that describe the texture (TextureRecord). White if there is none.
-vec4 sampleSceneTexture(int texel, vec2 uv) {
-  vec4 place = texelOf(sceneMaterials, texel);
-  if (place.x < 0.0) return vec4(1.0);
-  vec4 extent = texelOf(sceneMaterials, texel + 1);
+// The square of texels that a texture is interpolated between, at level 0.
+struct TexelSquare {
+  ivec2 first, size;   // upper left coordinate, as from withinPeriod(), and size of the texture
+  ivec2 corner;        // of the texture in its page
+  int page;            // below 0: there is no texture
+  uint wrapU, wrapV;
+  vec2 f;              // weights of the right column and the lower row; 0 for the nearest texel
+  bool nearest, linear;
+};
+
+// The square around `uv`. texel: the first of the three texels that describe the texture (TextureRecord).
+TexelSquare texelSquare(int texel, vec2 uv) {
+  vec4 place = texelOf(sceneMaterials, texel), extent = texelOf(sceneMaterials, texel + 1);
   vec4 axes = texelOf(sceneMaterials, texel + 2);
   vec2 p = (vec2(axes) * uv.x + vec2(axes.z, axes.w) * uv.y + vec2(extent.z, extent.w)) * vec2(extent);
   uint flags = uint(place.w), wrapU = flags & 3u, wrapV = flags >> 2 & 3u;
   bool nearest = (flags & kTextureNearest) != 0u;
   if (!nearest) p -= 0.5;
   p = mix(clamp(p, vec2(-1e9), vec2(1e9)), vec2(0.0), isnan(p));
-  vec2 base = floor(p);
-  vec2 f = nearest ? vec2(0.0) : p - base;
-  ivec2 size = ivec2(extent), corner = ivec2(place.y, place.z), first = ivec2(base);
-  first = ivec2(withinPeriod(first.x, size.x, wrapU), withinPeriod(first.y, size.y, wrapV));
-  bool linear = (flags & kTextureLinear) != 0u;
-  // A loop, because drivers insert these functions wherever a shader reads a texture.
+  vec2 base = floor(p), f = nearest ? vec2(0.0) : p - base;
+  ivec2 size = ivec2(extent), i = ivec2(base);
+  ivec2 first = ivec2(withinPeriod(i.x, size.x, wrapU), withinPeriod(i.y, size.y, wrapV));
+  return TexelSquare(first, size, ivec2(place.y, place.z), int(place.x), wrapU, wrapV, f, nearest,
+                     (flags & kTextureLinear) != 0u);
+}
+
+// One of the four texels of a square times its weight, as linear light. tap: bit 0 chooses the column, bit 1 the row.
+vec4 weightedTexel(TexelSquare s, int tap) {
+  ivec2 offset = ivec2(tap & 1, tap >> 1), i = s.first + offset;
+  ivec2 at = s.corner + ivec2(wrapTexel(i.x, s.size.x, s.wrapU), wrapTexel(i.y, s.size.y, s.wrapV));
+  vec2 weight = mix(1.0 - s.f, s.f, vec2(offset));
+  return weight.x * weight.y * sceneTexel(ivec3(at, s.page), s.linear);
+}
+
+// A texture at `uv`, as linear light: at level 0, the nearest texel or four, decoded and then interpolated. texel: the
+// first of the three texels that describe the texture (TextureRecord). White if there is none. A loop keeps shaders
+// small, as drivers copy this function to every place that calls it.
+vec4 sampleSceneTexture(int texel, vec2 uv) {
+  TexelSquare s = texelSquare(texel, uv);
+  if (s.page < 0) return vec4(1.0);
   vec4 sum = vec4(0.0);
-  for (int tap = 0; tap < (nearest ? 1 : 4); ++tap) {
-    ivec2 offset = ivec2(tap & 1, tap >> 1), i = first + offset;
-    ivec2 at = corner + ivec2(wrapTexel(i.x, size.x, wrapU), wrapTexel(i.y, size.y, wrapV));
-    vec2 weight = mix(1.0 - f, f, vec2(offset));
-    sum += weight.x * weight.y * sceneTexel(ivec3(at, int(place.x)), linear);
-  }
+  for (int tap = 0; tap < (s.nearest ? 1 : 4); ++tap) sum += weightedTexel(s, tap);
   return sum;
+}
+
+// Alpha of a texture, as in sampleSceneTexture(), but without a loop: rays ask for it at every triangle, and CPU devices
+// limit the iterations of an invocation.
+float sampleSceneAlpha(int texel, vec2 uv) {
+  TexelSquare s = texelSquare(texel, uv);
+  if (s.page < 0) return 1.0;
+  return weightedTexel(s, 0).a + weightedTexel(s, 1).a + weightedTexel(s, 2).a + weightedTexel(s, 3).a;
 }
 
 // A material at `uv`, with its textures. rgb: diffuse reflectance, a: alpha.
 vec4 materialReflectance(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   return texelOf(sceneMaterials, first) * sampleSceneTexture(first + kColorTexture, uv);
+}
+
+// Alpha of a material at `uv`, with its texture.
+float materialAlpha(uint material, vec2 uv) {
+  int first = int(material) * kMaterialTexels;
+  return texelOf(sceneMaterials, first).a * sampleSceneAlpha(first + kColorTexture, uv);
 }
 
 // The radiance that a material emits at `uv`, W/(sr m^2).

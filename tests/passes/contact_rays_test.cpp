@@ -59,7 +59,7 @@ struct Result {
 };
 
 struct Settings {
-  int rays = 512;  // with 1024, loops reach the limit of lavapipe
+  int rays = 1024;
   std::vector<glm::vec2> history;
   bool filter = false;
   bool (*contact)(size_t) = everyThird;
@@ -137,7 +137,7 @@ void expectLightOfAllVpls(const Eye& eye, const std::vector<scene::Vpl>& vpls, c
     hidden += want.g < 0.9 * open.g;
     const glm::vec4 light = glm::unpackHalf4x16(got.light[i]);
     EXPECT_EQ(light.a, kLonger);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], want[c], 0.03 * open[c] + 1e-3) << "pixel " << i;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], want[c], 0.01 * open[c] + 1e-3) << "pixel " << i;
   }
   EXPECT_GT(hidden, 20);
 }
@@ -164,7 +164,7 @@ TEST_P(ContactRays, AnyHistoryGivesTheSameLight) {
     EXPECT_LE(added.y, added.x);
     EXPECT_TRUE(vpls[i].intensity != glm::vec3(0) || added == glm::vec2(0)) << "a ray to an empty slot";
   }
-  EXPECT_GT(rays, 0.9 * Settings().rays * got.pixels) << "few pixels lie in no VPL's light";
+  EXPECT_GT(rays, 0.9 * 1024 * got.pixels) << "few pixels lie in no VPL's light";
 }
 
 // Where a surface has come into view there is no mean over frames in which subsets could take turns.
@@ -172,9 +172,9 @@ TEST_P(ContactRays, AllSubsetsAtOnceWithoutHistory) {
   const Eye eye({0.3f, 0.2f, 0});
   std::vector<scene::Vpl> vpls = lamps();
   for (size_t i = 0; i < vpls.size(); ++i) vpls[i].intensity *= 0.25f + 0.5f * float(i % kSubsets);
-  expectLightOfAllVpls(eye, vpls, run(eye, vpls, {.rays = 128, .fresh = allPixels}));
+  expectLightOfAllVpls(eye, vpls, run(eye, vpls, {.rays = 256, .fresh = allPixels}));
   expectLightOfAllVpls(eye, vpls,
-                       run(eye, vpls, {.rays = 64, .fresh = allPixels, .firstSamples = 2 * kSubsets}));
+                       run(eye, vpls, {.rays = 128, .fresh = allPixels, .firstSamples = 2 * kSubsets}));
 }
 
 // The others are as they are without `origin`, and a single sample is the one that they have.
