@@ -70,13 +70,16 @@ int wrapTexel(int i, int size, uint wrap) {
 struct TexelSquare {
   ivec2 first, size;   // upper left coordinate, as from withinPeriod(), and size of the texture
   ivec2 corner;        // of the texture in its page
-  int page;            // below 0: there is no texture
+  int page;
   uint wrapU, wrapV;
   vec2 f;              // weights of the right column and the lower row; 0 for the nearest texel
   bool nearest, linear;
 };
 
-// The square around `uv`. texel: the first of the three texels that describe the texture (TextureRecord).
+// Whether there is a texture. texel: the first of the three texels that describe it (TextureRecord).
+bool hasTexture(int texel) { return texelOf(sceneMaterials, texel).x >= 0.0; }
+
+// The square around `uv` of a texture that there is.
 TexelSquare texelSquare(int texel, vec2 uv) {
   vec4 place = texelOf(sceneMaterials, texel), extent = texelOf(sceneMaterials, texel + 1);
   vec4 axes = texelOf(sceneMaterials, texel + 2);
@@ -100,12 +103,11 @@ vec4 weightedTexel(TexelSquare s, int tap) {
   return weight.x * weight.y * sceneTexel(ivec3(at, s.page), s.linear);
 }
 
-// A texture at `uv`, as linear light: at level 0, the nearest texel or four, decoded and then interpolated. texel: the
-// first of the three texels that describe the texture (TextureRecord). White if there is none. A loop keeps shaders
-// small, as drivers copy this function to every place that calls it.
+// A texture at `uv`, as linear light: at level 0, the nearest texel or four, decoded and then interpolated. White if
+// there is none. A loop keeps shaders small, as drivers copy this function to every place that calls it.
 vec4 sampleSceneTexture(int texel, vec2 uv) {
+  if (!hasTexture(texel)) return vec4(1.0);
   TexelSquare s = texelSquare(texel, uv);
-  if (s.page < 0) return vec4(1.0);
   vec4 sum = vec4(0.0);
   for (int tap = 0; tap < (s.nearest ? 1 : 4); ++tap) sum += weightedTexel(s, tap);
   return sum;
@@ -114,8 +116,8 @@ vec4 sampleSceneTexture(int texel, vec2 uv) {
 // Alpha of a texture, as in sampleSceneTexture(), but without a loop: rays ask for it at every triangle, and CPU devices
 // limit the iterations of an invocation.
 float sampleSceneAlpha(int texel, vec2 uv) {
+  if (!hasTexture(texel)) return 1.0;
   TexelSquare s = texelSquare(texel, uv);
-  if (s.page < 0) return 1.0;
   return weightedTexel(s, 0).a + weightedTexel(s, 1).a + weightedTexel(s, 2).a + weightedTexel(s, 3).a;
 }
 
