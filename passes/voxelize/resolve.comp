@@ -31,17 +31,17 @@ void main() {
     return;
   }
   VoxelGrid grid = voxelGrid(resolution);
-  float inverse = 1.0 / area;
+  float inverse = 1.0 / area, inverseWeight = 1.0 / sumAt(word + 14u);
   uvec3 cell = uvec3(linear % resolution, linear / resolution % resolution, linear / (resolution * resolution));
-  vec3 position = voxelToWorld(grid, vec3(cell) + sums3At(word + 2u) * inverse);
-  vec3 normal = sums3At(word + 8u) * inverse - 1.0;
+  vec3 position = voxelToWorld(grid, vec3(cell) + sums3At(word + 16u) * inverseWeight);
+  vec3 normal = sums3At(word + 22u) * inverseWeight - 1.0;
   // The normals of one side can cancel if three or more meet; any direction on that side will do.
   float len = length(normal);
   normal = len > 1e-3 ? normal / len : vec3(side == 0u ? 0.57735027 : -0.57735027);
-  float object = float(0xffffu - (sums.words[word + 26u] & 0xffffu));
-  uint piece = sums.words[word + 27u], mask = (1u << kTriangleBits) - 1u;
+  float object = float(0xffffu - (sums.words[word + 28u] & 0xffffu));
+  uint piece = sums.words[word + 29u], mask = (1u << kTriangleBits) - 1u;
   float triangle = piece == 0u ? 0.0 : float(mask - (piece & mask));  // below 2^24: exact
   voxelsSurface.sides[2u * voxel + side] =
       VoxelSide(position, area * (1.0 / 4294967296.0) * grid.cell * grid.cell, normal, object,
-                sums3At(word + 14u) * inverse, triangle, sums3At(word + 20u) * inverse, 0.0);
+                sums3At(word + 2u) * inverse, triangle, sums3At(word + 8u) * inverse, 0.0);
 }

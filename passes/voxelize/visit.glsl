@@ -49,25 +49,29 @@ void addTo(uint word, precise vec3 x) {
   addTo(word + 4u, x.z);
 }
 
-// Words of a side: area, position, normal + 1, reflectance, emission (each weighted by the area), object, triangle.
-// `triangle` counts from the first non-static one; all kTriangleBits are set if the object does not deform.
+// Words of a side: area, reflectance and emission (weighted by the area), weight, position and normal + 1 (weighted by
+// the weight), object, triangle. `triangle` counts from the first non-static one; all kTriangleBits are set if the object
+// does not deform.
 void addPiece(uint side, Piece piece, vec3 normal, SurfacePoint surface, uint object, uint triangle) {
   uint word = side * kSumWords;
-  precise vec3 position = piece.area * piece.centre;
-  precise vec3 biased = piece.area * (normal + 1.0);
+  bool emissive = surface.emission != vec3(0.0);
   precise vec3 reflectance = piece.area * surface.reflectance;
   precise vec3 emission = piece.area * min(surface.emission, vec3(65504.0));
+  precise float weight = piece.area * (emissive ? kEmissiveWeight : 1.0);
+  precise vec3 position = weight * piece.centre;
+  precise vec3 biased = weight * (normal + 1.0);
   addTo(word, piece.area);
-  addTo(word + 2u, position);
-  addTo(word + 8u, biased);
-  addTo(word + 14u, reflectance);
-  if (emission != vec3(0.0)) addTo(word + 20u, emission);
+  addTo(word + 2u, reflectance);
+  if (emissive) addTo(word + 8u, emission);
+  addTo(word + 14u, weight);
+  addTo(word + 16u, position);
+  addTo(word + 22u, biased);
   // The object of the largest piece; of several such pieces, the smallest number.
-  atomicMax(sums.words[word + 26u], uint(min(piece.area * 32768.0, 65535.0)) << 16 | (0xffffu - object));
+  atomicMax(sums.words[word + 28u], uint(min(piece.area * 32768.0, 65535.0)) << 16 | (0xffffu - object));
   // The same for the triangle, with coarser areas.
   const uint kNone = (1u << kTriangleBits) - 1u;
   if (triangle < kNone)
-    atomicMax(sums.words[word + 27u],
+    atomicMax(sums.words[word + 29u],
               uint(min(piece.area * 512.0, 1023.0)) << kTriangleBits | (kNone - triangle));
 }
 #endif

@@ -253,6 +253,24 @@ TEST(Voxelize, ThinWallsKeepBothSides) {
   EXPECT_EQ(v.surface[2 * (single - 1) + 1].area, 0);
 }
 
+// A luminous panel just below a ceiling, in the same voxels: these lie on the panel, with the mean light of both.
+TEST(Voxelize, SidesLieWhereTheyEmit) {
+  Scene s = emptyScene();
+  const uint32_t plaster = addMaterial(s, vec3(0.8f)), panel = addMaterial(s, vec3(0.2f));
+  s.materials[panel].emission = vec3(2, 4, 6);
+  const vec3 x(1, 0, 0), y(0, 1, 0);
+  addQuad(s, plaster, vec3(0, 0, 0), x, y);
+  addQuad(s, plaster, vec3(0, 0, 0.55f), y, x);
+  addQuad(s, panel, vec3(0, 0, 0.54f), y, x);
+  const VoxelArrays v = expectAsReference(s, 16);
+  const uint32_t voxel = v.voxelAt(glm::ivec3(v.grid.worldToVoxel(vec3(0.5f, 0.5f, 0.545f))));
+  ASSERT_GT(voxel, 0u);
+  const VoxelSide& below = v.surface[2 * (voxel - 1) + 1];
+  EXPECT_NEAR(below.position.z, 0.54f, 1e-4f);
+  EXPECT_LT(glm::length(below.reflectance - vec3(0.5f)), 1e-4f);
+  EXPECT_LT(glm::length(below.emission - vec3(1, 2, 3)), 1e-4f);
+}
+
 TEST(Voxelize, TexturesAndAlphaMasks) {
   Scene s = emptyScene();
   scene::Texture texture;

@@ -18,7 +18,7 @@ using glm::vec3;
 uint64_t fixedPoint(float x) { return uint64_t(std::floor(x * 4294967296.0f + 0.5f)); }
 
 struct Sums {
-  uint64_t area = 0;
+  uint64_t area = 0, weight = 0;
   std::array<uint64_t, 3> position{}, normal{}, reflectance{}, emission{};
   uint32_t object = 0;  // key: area of the largest piece and 0xffff - its object
 };
@@ -165,10 +165,12 @@ vec2 uvAt(const scene::Geometry& g, const scene::Triangle& indices, const Triang
 }
 
 void add(Sums& sums, const Piece& piece, vec3 normal, vec3 reflectance, vec3 emission, uint32_t object) {
+  const float weight = piece.area * (emission != vec3(0) ? 256.0f : 1.0f);
   sums.area += fixedPoint(piece.area);
+  sums.weight += fixedPoint(weight);
   for (int k = 0; k < 3; ++k) {
-    sums.position[size_t(k)] += fixedPoint(piece.area * piece.centroid[k]);
-    sums.normal[size_t(k)] += fixedPoint(piece.area * (normal[k] + 1.0f));
+    sums.position[size_t(k)] += fixedPoint(weight * piece.centroid[k]);
+    sums.normal[size_t(k)] += fixedPoint(weight * (normal[k] + 1.0f));
     sums.reflectance[size_t(k)] += fixedPoint(piece.area * reflectance[k]);
     sums.emission[size_t(k)] += fixedPoint(piece.area * std::min(emission[k], 65504.0f));
   }
@@ -204,8 +206,8 @@ void addTriangle(const scene::Scene& scene, const scene::Geometry& g, const scen
       }
 }
 
-vec3 average(const std::array<uint64_t, 3>& sum, uint64_t area) {
-  return vec3(glm::dvec3(double(sum[0]), double(sum[1]), double(sum[2])) / double(area));
+vec3 average(const std::array<uint64_t, 3>& sum, uint64_t weight) {
+  return vec3(glm::dvec3(double(sum[0]), double(sum[1]), double(sum[2])) / double(weight));
 }
 
 scene::VoxelSide resolveSide(const scene::VoxelGrid& grid, uint32_t linear, uint32_t side, const Sums& sums) {
@@ -213,9 +215,9 @@ scene::VoxelSide resolveSide(const scene::VoxelGrid& grid, uint32_t linear, uint
   if (sums.area == 0) return result;
   const uint32_t r = uint32_t(grid.resolution);
   const vec3 cell(float(linear % r), float(linear / r % r), float(linear / (r * r)));
-  result.position = grid.voxelToWorld(cell + average(sums.position, sums.area));
+  result.position = grid.voxelToWorld(cell + average(sums.position, sums.weight));
   result.area = float(double(sums.area) / 4294967296.0) * grid.cell * grid.cell;
-  const vec3 normal = average(sums.normal, sums.area) - 1.0f;
+  const vec3 normal = average(sums.normal, sums.weight) - 1.0f;
   // The normals of one side can cancel if three or more meet; any direction to that side will do.
   const float length = glm::length(normal);
   result.normal = length > 1e-3f ? normal / length : vec3(side == 0 ? 0.57735027f : -0.57735027f);
