@@ -1,7 +1,9 @@
 // One attempt per invocation: a pixel of the region, the surface it shows, and one diffuse bounce from there. The
-// voxel side hit by the bounce becomes a candidate; it need not be visible to the eye. TRACED 1: every fourth attempt
-// first takes an eye path at random, and the candidate lies where that ends, with the light found there. Voxels know
-// only direct light, none of emissive surfaces, and their averages close gaps that light comes through.
+// voxel side hit by the bounce becomes a candidate; it need not be visible to the eye. INTERSECTION 1: it lies where the
+// ray meets the side's plane, not at the side's average. TRACED 1: every fourth attempt first takes an eye path at
+// random, and the candidate lies where that ends, with the light found there. Voxels know only direct light, none of
+// emissive surfaces, and their averages close gaps that light comes through. EMITTED 1: no attempt starts at the eye; the
+// candidates are VPLs of light paths.
 #include "device/texels.glsl"
 #include "scene/objects.glsl"
 #include "vpls/paraboloid.glsl"
@@ -27,6 +29,9 @@ LARGE_TEXELS(vec4, radiance);
 #if TRACED
 #include "vpls/eye_paths.glsl"
 uniform samplerBuffer tracedEnds;
+#endif
+#if EMITTED
+uniform samplerBuffer emitted;
 #endif
 layout(std430) writeonly buffer Candidates { Candidate candidates[]; };
 layout(std430) buffer Counters { uint counters[]; };  // in the order below
@@ -58,7 +63,7 @@ ivec2 pixelOf(ivec2 size, vec2 gaze, uint stream, uint from) {
   return regionSample(from, makeFovea(gaze, vec2(size), foveaRadius), size, stream);
 }
 
-#if TRACED
+#if TRACED || EMITTED
 // The side of the voxel at `position` whose surface faces most as `normal` says.
 uint sideAt(vec3 position, vec3 normal) {
   VoxelGrid grid = voxelsGrid();
@@ -98,9 +103,25 @@ Candidate candidateOn(uint number, vec3 place) {
   return candidate;
 }
 
+#if EMITTED
+// The candidate at VPL i of the light paths, if there is one and its voxel has a side there.
+Candidate candidateAtEmitted(uint i) {
+  if (i >= uint(textureSize(emitted)) / 3u) return kNoCandidate;
+  Vpl vpl = loadVpl(emitted, i);
+  uint side = isLit(vpl) ? sideAt(vpl.position, vpl.normal) : kNoSide;
+  if (side == kNoSide) return kNoCandidate;
+  return candidateOn(side, INTERSECTION != 0 ? vpl.position : loadSide(side).position);
+}
+#endif
+
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
+#if EMITTED
+  Candidate candidate = candidateAtEmitted(i);
+  candidates[i] = candidate;
+  if (candidate.side != kNoSide) atomicAdd(counters[kCandidates], 1u);
+#else
   Candidate candidate = kNoCandidate;
   uint stream = randomStream(seed, streamFrame, kCandidateStream, i);
 #if TRACED
@@ -140,5 +161,7 @@ void main() {
     return;
   }
   atomicAdd(counters[kCandidates], 1u);
-  candidates[i] = candidateOn(hit.side, loadSide(hit.side).position);
+  candidates[i] = candidateOn(
+      hit.side, INTERSECTION != 0 ? seen.position + hit.distance * direction : loadSide(hit.side).position);
+#endif
 }

@@ -29,6 +29,9 @@ class Candidates : public Pass {
             "paths of pass eye-paths; every fourth candidate lies where one of them ends, with the light "
             "found there")
         .makeOptional();
+    d.input("emitted", vplBuffer(), Usage::TexelRead,
+            "VPLs of light paths (pass emit); attempt i then takes VPL i instead of a pixel")
+        .makeOptional();
     d.output("candidates", candidateBuffer(parameter("count")), Usage::StorageWrite,
              "one entry per attempt; an attempt that hit nothing has no side and is otherwise zero");
     d.parameter("count", integer(1000, 1, 65536), "number of attempts, with one pixel and one ray each");
@@ -37,6 +40,9 @@ class Candidates : public Pass {
                 "the fovea");
     d.parameter("image_share", real(0.4, 0, 1),
                 "share of the whole image for region `mixed`, rounded to 64ths");
+    d.parameter("position", choice("average", {"average", "intersection"}),
+                "where a candidate lies on its voxel side: at the average of the surface in it, or where the "
+                "ray meets the plane through that average");
     d.parameter("per_frame", flag(true),
                 "whether each frame uses new random numbers; if false, all frames use the same ones");
     d.parameter("second_view", text("right"),
@@ -50,7 +56,9 @@ class Candidates : public Pass {
     d.step("candidates/candidates.comp")
         .define("TWO_EYES", wired("gbuffer2"))
         .define("HAS_RADIANCE", wired("radiance"))
+        .define("INTERSECTION", is("position", "intersection"))
         .define("TRACED", wired("traced"))
+        .define("EMITTED", wired("emitted"))
         .constant(
             "imageShare64ths",
             [](const RecordContext& ctx) { return imageShare64ths(ctx.parameters().real("image_share")); })

@@ -1,7 +1,7 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 // Every pixel gives its foveated weight to the voxel side in which its surface point lies; a side keeps the largest
-// weight (passes/README.md, weight-map), so the result does not depend on the order. Defines: WHOLE_IMAGE 0/1;
-// BLOCK, pixels per invocation along an axis; GROUP, invocations per work group along an axis.
+// weight (passes/vpls.md, weight-map), so the result does not depend on the order. Defines: WHOLE_IMAGE 0/1;
+// FROM_CENTRE 0/1, whether weights fall off from the gaze on and not from the edge of the fovea; BLOCK, pixels per invocation along an axis; GROUP, invocations per work group along an axis.
 #include "scene/scene.glsl"
 #include "sampling/fovea.glsl"
 #include "voxels/voxel_trace.glsl"
@@ -69,6 +69,7 @@ void main() {
   VoxelGrid grid = voxelsGrid();
 #if !WHOLE_IMAGE
   Fovea fovea = makeFovea(view.gaze, vec2(size), foveaRadius);
+  if (FROM_CENTRE != 0) fovea.radius = 1.0;
 #endif
   uint visible = 0u, unassigned = 0u;
   Seen next = seenAt(grid, first, 0, size);

@@ -25,6 +25,9 @@ class WeightMap : public Pass {
     d.parameter("region", choice("fovea", {"fovea", "image"}),
                 "region of full weight: the disc around the gaze, outside which weights fall off, or the "
                 "whole image");
+    d.parameter("falloff", choice("edge", {"edge", "centre"}),
+                "where the weights of region `fovea` begin to fall off: at the edge of the disc, as "
+                "min(1, r_f / r), or at its centre, as 1 / r with r in pixels, at most 1");
     d.parameter("spacing", integer(1, 1, 16),
                 "one pixel in each square of this width is used; above 1, sides that are smaller on the "
                 "screen may be missed");
@@ -35,6 +38,7 @@ class WeightMap : public Pass {
     d.fill("weights", 0);
     d.step("weight-map/scatter.comp")
         .define("WHOLE_IMAGE", is("region", "image"))
+        .define("FROM_CENTRE", is("falloff", "centre"))
         .define("BLOCK", kBlock)
         .define("GROUP", kGroup)
         .groups(ceilDiv(widthOf("gbuffer.distance"), tile), ceilDiv(heightOf("gbuffer.distance"), tile));

@@ -83,6 +83,7 @@ struct CandidateReference {
     bool background = false;
     glm::vec3 origin{0}, direction{0}, normal{0}, face{0};
     uint32_t side = scene::kNoSide;
+    float distance = 0;  // to the side's plane
   };
 
   // nudge turns the direction slightly.
@@ -102,7 +103,8 @@ struct CandidateReference {
     a.direction = glm::normalize(d + nudge);
     a.face = p.face;
     const scene::Voxels v{voxels.grid, voxels.index, voxels.surface};
-    a.side = scene::traceVoxels(v, a.origin, a.direction, p.face).side;
+    const scene::VoxelHit hit = scene::traceVoxels(v, a.origin, a.direction, p.face);
+    a.side = hit.side, a.distance = hit.distance;
     return a;
   }
 

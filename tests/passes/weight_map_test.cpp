@@ -2,6 +2,7 @@
 // over the pixels.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
@@ -201,6 +202,21 @@ std::vector<float> wallWeights(PassTest& test, const VoxelArrays& voxels, glm::v
   test.beforeFrame([gaze](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; });
   test.run();
   return test.values<float>("weights");
+}
+
+// With `falloff` `centre` the largest weight of a side is 1 / r of its pixel nearest to the gaze.
+TEST(WeightMap, FallsFromTheGaze) {
+  const scene::Scene s = room();
+  const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), kResolution);
+  const Picture picture = wallPicture(96);
+  PassTest test("weight-map");
+  test.scene(s).param("falloff", "centre");
+  wallWeights(test, voxels, {0.4f, 0.6f}, picture);
+  const float pixel = 1.0f / 96;  // the radius of a fovea of one pixel
+  expectEqual(test, reference(picture, voxels, test.lastFrame().views[0].eye, {0.4f, 0.6f}, pixel));
+  const auto weights = test.values<float>("weights");
+  EXPECT_GT(std::ranges::max(weights), 0.5f);
+  EXPECT_LT(std::ranges::count_if(weights, [](float w) { return w > 0.1f; }), 20);
 }
 
 // The weight is exactly 1 inside the disc and r_f / r at the nearest pixel outside: continuous across the disc's
