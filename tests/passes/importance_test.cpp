@@ -12,10 +12,8 @@
 #include "framework/base/random.h"
 #include "framework/scene/load.h"
 #include "framework/scene/scene.h"
-#include "shaders/records/hemisphere_rays.h"
 #include "shaders/records/vpl.h"
-#include "tests/references/paraboloid.h"
-#include "tests/references/voxel_trace.h"
+#include "tests/passes/importance_reference.h"
 #include "tests/support/pixel_rays.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
@@ -107,44 +105,6 @@ std::vector<float> randomWeights(size_t count) {
   return weights;
 }
 
-// A ray that grazes the border of a voxel hits one side or the other depending on rounding, so what it may see is a
-// range. All other rays are exact.
-struct Reference {
-  scene::Voxels voxels;
-  const std::vector<float>& weights;
-  size_t rays = 0, grazing = 0;
-
-  struct Range {
-    double low = 0, high = 0;
-  };
-  Range importance(glm::vec3 position, glm::vec3 normal) {
-    const glm::mat3 frame = scene::orthonormalFrame(normal);
-    Range sum;
-    double cosines = 0;
-    for (const glm::vec3 local : scene::kHemisphereRay) {
-      const glm::vec3 direction = scene::toWorld(frame, local);
-      const uint32_t side = scene::traceVoxels(voxels, position, direction, normal).side;
-      const auto weight = [&](uint32_t s) { return s == scene::kNoSide ? 0.0 : double(weights[s]); };
-      double low = weight(side), high = low;
-      bool grazes = false;
-      for (uint32_t k = 0; k < 8; ++k) {  // the same ray, a hair beside
-        const glm::vec3 origin = position + 1e-5f * voxels.grid.cell * randomVec3(40, k);
-        const glm::vec3 turned = glm::normalize(direction + 1e-6f * randomVec3(43, k));
-        const uint32_t other = scene::traceVoxels(voxels, origin, turned, normal).side;
-        grazes |= other != side;
-        low = std::min(low, weight(other));
-        high = std::max(high, weight(other));
-      }
-      ++rays;
-      grazing += grazes;
-      sum.low += low * local.z;
-      sum.high += high * local.z;
-      cosines += local.z;
-    }
-    return {sum.low / cosines, sum.high / cosines};
-  }
-};
-
 // ---- Against the CPU --------------------------------------------------------------------------------------
 
 class AgainstTheCpu : public testing::TestWithParam<bool> {};
@@ -167,7 +127,7 @@ TEST_P(AgainstTheCpu, EveryVplIsEqual) {
   test.beforeFrame([](PassTest&, scene::Frame& frame) { frame.exposure = 0.6f; });
   test.run();
 
-  Reference reference{{voxels.grid, voxels.index, voxels.surface}, weights};
+  ImportanceReference reference{{voxels.grid, voxels.index, voxels.surface}, weights};
   size_t live = 0;
   const auto compare = [&](const std::vector<float>& got, const auto& list, auto isLive) {
     ASSERT_EQ(got.size(), list.size());
@@ -179,7 +139,7 @@ TEST_P(AgainstTheCpu, EveryVplIsEqual) {
       ++live;
       const double bright = std::min(1.0, double(0.6f) * double(radiance[list[i].side].w));
       const double light = luminance ? 0.2 + 0.8 * bright : 1.0;
-      const Reference::Range expected = reference.importance(list[i].position, list[i].normal);
+      const ImportanceReference::Range expected = reference.importance(list[i].position, list[i].normal);
       EXPECT_GE(got[i], light * expected.low - 1e-5) << i;
       EXPECT_LE(got[i], light * expected.high + 1e-5) << i;
     }
