@@ -49,6 +49,17 @@ uint meetsSide(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 norm
              : kPassed;
 }
 
+// Whether the surface of a side in `cell` goes on in the direction of `place`, a point of its plane beside it: whether the
+// next cell that way holds a surface.
+bool surfaceContinues(VoxelGrid grid, ivec3 cell, uint side, vec3 place) {
+  VoxelSide s = loadSide(side);
+  vec3 off = place - s.position;
+  off -= dot(off, s.normal) * s.normal;
+  vec3 size = abs(off);
+  bool alongX = size.x >= size.y && size.x >= size.z, alongY = !alongX && size.y >= size.z;
+  return voxelAt(grid, cell + ivec3(sign(off)) * ivec3(alongX, alongY, !alongX && !alongY)) != 0u;
+}
+
 // Cell of a walk along one axis after it has passed all walls before the distance t (also those at t, with `also`),
 // corrected for rounding: `at` is that cell or a neighbour, next and before are the distances of the walls ahead of
 // it and behind it.
@@ -61,8 +72,9 @@ int settle(int at, int from, int stride, float next, float before, float t, bool
 // unit, on the side to which the ray goes (for a ray that starts on no surface, the direction itself). A side is hit if
 // it faces the ray, is met within its cell and lies in front of the start's tangent plane; the last condition skips the
 // ray's own surface and the back of a thin wall. If both sides of a voxel qualify, the one that faces the ray more is
-// hit; a voxel without such a side is passed. A ray that leaves the grid hits the last side that it merely passed, if
-// any, since a slit between the planes of neighbours is no hole in a wall.
+// hit; a voxel without such a side is passed. A slit between sides is no hole in a wall: a ray that leaves the grid hits
+// the last side through which it slipped, if any. That is one whose plane it crossed within the cell, where the surface
+// goes on beside it, or between the cell and the one before. What a ray passes beyond an edge, it does not hit.
 //
 // The walk goes from cell to cell through the nearest wall (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for
 // Ray Tracing", Eurographics 1987). The distances to the walls follow from the cell's integer coordinates, so no
@@ -71,7 +83,7 @@ int settle(int at, int from, int stride, float next, float before, float t, bool
 // CPU's nearer caches. The walk takes at most 3R + 3 turns. A ray with a NaN hits nothing. far: cells that the ray
 // enters beyond this distance (m) are ignored.
 VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, float far) {
-  VoxelHit miss = VoxelHit(kNoSide, 0.0), passed = miss;
+  VoxelHit miss = VoxelHit(kNoSide, 0.0), slipped = miss;
   vec3 p = (origin - grid.origin) / grid.cell;  // in cells, as are all distances below
   float size = float(grid.resolution);
   // Rejects NaN, for which every comparison is false, and positions too far away for a float to resolve a cell.
@@ -95,6 +107,7 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
   vec3 ahead = vec3(greaterThan(direction, vec3(0.0)));  // the wall ahead: corner 0 or 1 of the cell
   uint brick = imageLoad(voxelsOccupied, occupiedBrick(cell)).r;
   bool inside = true, full = (brick & occupiedBit(cell)) != 0u;
+  float front = -1.0;  // where the ray left the last cell that it left in front of its side
   for (int turn = 0; inside;) {
     // Empty space is crossed in a loop of its own: a CPU device executes everything in a loop for all rays of a group
     // in every turn, and most cells are empty.
@@ -129,15 +142,19 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
     uint met = max(met0, met1);
     if (met != kNotMet) {
       bool second = met1 > met0 || (met1 == met0 && facing1 < facing0);
-      VoxelHit hit = VoxelHit(second ? side + 1u : side,
-                              clamp(second ? distance1 : distance0, t * grid.cell, max(t, next) * grid.cell));
+      float plane = second ? distance1 : distance0;
+      VoxelHit hit = VoxelHit(second ? side + 1u : side, clamp(plane, t * grid.cell, max(t, next) * grid.cell));
       if (met == kMet) return hit;
-      passed = hit;
+      if (plane > next * grid.cell)
+        front = next;
+      else if (plane < t * grid.cell ? front == t
+                                     : surfaceContinues(grid, cell, hit.side, origin + plane * direction))
+        slipped = hit;
     }
     full = false;  // on to the next cell
   }
   if (t * grid.cell > far) return miss;
-  return passed;
+  return slipped;
 }
 
 // The same without an end.

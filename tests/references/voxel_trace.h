@@ -46,6 +46,16 @@ inline Meeting meetsSide(const Voxels& voxels, uint32_t side, glm::vec3 origin, 
   return met ? Meeting::Met : Meeting::Passed;
 }
 
+// Whether the next cell from `cell` towards `place`, a point of the side's plane, holds a surface.
+inline bool surfaceContinues(const Voxels& voxels, glm::ivec3 cell, const VoxelSide& s, glm::vec3 place) {
+  glm::vec3 off = place - s.position;
+  off -= glm::dot(off, s.normal) * s.normal;
+  const glm::vec3 size = glm::abs(off);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  cell[axis] += off[axis] > 0 ? 1 : off[axis] < 0 ? -1 : 0;
+  return voxels.at(cell) != 0u;
+}
+
 // First side along a ray. origin, direction (unit) and normal are in world space; `normal` is that of the surface on
 // which the ray starts, on the side to which the ray goes. far: cells that the ray enters beyond this distance (m)
 // are ignored. The shader explains the method.
@@ -75,7 +85,8 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
 
   glm::ivec3 cell =
       glm::clamp(glm::ivec3(glm::floor(p + t * direction)), glm::ivec3(0), glm::ivec3(grid.resolution - 1));
-  VoxelHit passed;  // the last side that the ray passed beside, see the shader
+  VoxelHit slipped;  // the last side through which the ray slipped, see the shader
+  float front = -1.0f;
   for (int turn = 0; turn < 3 * grid.resolution + 3; ++turn) {
     const uint32_t voxel = voxels.at(cell);
     const glm::vec3 walls = (glm::vec3(cell) + ahead - p) * inverse + never;
@@ -93,7 +104,14 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
         const VoxelHit hit{side + second,
                            glm::clamp(distance[second], t * grid.cell, std::max(t, next) * grid.cell)};
         if (met == Meeting::Met) return hit;
-        passed = hit;
+        const float plane = distance[second];
+        if (plane > next * grid.cell) {
+          front = next;
+        } else if (plane < t * grid.cell ? front == t
+                                         : surfaceContinues(voxels, cell, voxels.surface[hit.side],
+                                                            origin + plane * direction)) {
+          slipped = hit;
+        }
       }
     }
     const int through = walls.x == next ? 0 : walls.y == next ? 1 : 2;
@@ -102,7 +120,7 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
     if (t * grid.cell > far) return {};
     if (!voxels.inside(cell)) break;
   }
-  return passed;
+  return slipped;
 }
 
 }  // namespace fovea::scene
