@@ -49,15 +49,20 @@ uint meetsSide(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 norm
              : kPassed;
 }
 
-// Whether the surface of a side in `cell` goes on in the direction of `place`, a point of its plane beside it: whether the
-// next cell that way holds a surface.
-bool surfaceContinues(VoxelGrid grid, ivec3 cell, uint side, vec3 place) {
+// Whether a ray that only passed a side in `cell` slipped through the surface that the side represents: if it crosses the
+// plane beyond the cell, within the reach of the side; if it does so within the cell, where the surface goes on in a next
+// cell that way. place: where the ray crosses the plane.
+bool slipsThrough(VoxelGrid grid, ivec3 cell, uint side, vec3 place, bool beyond) {
   VoxelSide s = loadSide(side);
   vec3 off = place - s.position;
+  if (beyond) return kPi * dot(off, off) < kSideRadii * kSideRadii * s.area;
   off -= dot(off, s.normal) * s.normal;
   vec3 size = abs(off);
-  bool alongX = size.x >= size.y && size.x >= size.z, alongY = !alongX && size.y >= size.z;
-  return voxelAt(grid, cell + ivec3(sign(off)) * ivec3(alongX, alongY, !alongX && !alongY)) != 0u;
+  bvec3 towards = greaterThan(size, vec3(0.5 * max(max(size.x, size.y), size.z)));
+  ivec3 next = ivec3(sign(off));
+  return (towards.x && voxelAt(grid, cell + ivec3(next.x, 0, 0)) != 0u) ||
+         (towards.y && voxelAt(grid, cell + ivec3(0, next.y, 0)) != 0u) ||
+         (towards.z && voxelAt(grid, cell + ivec3(0, 0, next.z)) != 0u);
 }
 
 // Cell of a walk along one axis after it has passed all walls before the distance t (also those at t, with `also`),
@@ -73,8 +78,8 @@ int settle(int at, int from, int stride, float next, float before, float t, bool
 // it faces the ray, is met within its cell and lies in front of the start's tangent plane; the last condition skips the
 // ray's own surface and the back of a thin wall. If both sides of a voxel qualify, the one that faces the ray more is
 // hit; a voxel without such a side is passed. A slit between sides is no hole in a wall: a ray that leaves the grid hits
-// the last side through which it slipped, if any. That is one whose plane it crossed within the cell, where the surface
-// goes on beside it, or between the cell and the one before. What a ray passes beyond an edge, it does not hit.
+// the last side through which it slipped, if any. What it passes beyond an edge, for example a lamp in the air, it does
+// not hit.
 //
 // The walk goes from cell to cell through the nearest wall (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for
 // Ray Tracing", Eurographics 1987). The distances to the walls follow from the cell's integer coordinates, so no
@@ -107,7 +112,6 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
   vec3 ahead = vec3(greaterThan(direction, vec3(0.0)));  // the wall ahead: corner 0 or 1 of the cell
   uint brick = imageLoad(voxelsOccupied, occupiedBrick(cell)).r;
   bool inside = true, full = (brick & occupiedBit(cell)) != 0u;
-  float front = -1.0;  // where the ray left the last cell that it left in front of its side
   for (int turn = 0; inside;) {
     // Empty space is crossed in a loop of its own: a CPU device executes everything in a loop for all rays of a group
     // in every turn, and most cells are empty.
@@ -145,10 +149,8 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
       float plane = second ? distance1 : distance0;
       VoxelHit hit = VoxelHit(second ? side + 1u : side, clamp(plane, t * grid.cell, max(t, next) * grid.cell));
       if (met == kMet) return hit;
-      if (plane > next * grid.cell)
-        front = next;
-      else if (plane < t * grid.cell ? front == t
-                                     : surfaceContinues(grid, cell, hit.side, origin + plane * direction))
+      if (plane >= t * grid.cell &&
+          slipsThrough(grid, cell, hit.side, origin + plane * direction, plane > next * grid.cell))
         slipped = hit;
     }
     full = false;  // on to the next cell

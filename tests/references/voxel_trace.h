@@ -46,14 +46,19 @@ inline Meeting meetsSide(const Voxels& voxels, uint32_t side, glm::vec3 origin, 
   return met ? Meeting::Met : Meeting::Passed;
 }
 
-// Whether the next cell from `cell` towards `place`, a point of the side's plane, holds a surface.
-inline bool surfaceContinues(const Voxels& voxels, glm::ivec3 cell, const VoxelSide& s, glm::vec3 place) {
+// Whether a ray that crosses the plane of a side at `place`, in its cell or beyond, slips through its surface.
+inline bool slipsThrough(const Voxels& voxels, glm::ivec3 cell, const VoxelSide& s, glm::vec3 place,
+                         bool beyond) {
   glm::vec3 off = place - s.position;
+  if (beyond) return 3.14159265f * glm::dot(off, off) < kSideRadii * kSideRadii * s.area;
   off -= glm::dot(off, s.normal) * s.normal;
   const glm::vec3 size = glm::abs(off);
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  cell[axis] += off[axis] > 0 ? 1 : off[axis] < 0 ? -1 : 0;
-  return voxels.at(cell) != 0u;
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::ivec3 next = cell;
+    next[axis] += off[axis] > 0 ? 1 : off[axis] < 0 ? -1 : 0;
+    if (size[axis] > 0.5f * std::max({size.x, size.y, size.z}) && voxels.at(next) != 0u) return true;
+  }
+  return false;
 }
 
 // First side along a ray. origin, direction (unit) and normal are in world space; `normal` is that of the surface on
@@ -86,7 +91,6 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
   glm::ivec3 cell =
       glm::clamp(glm::ivec3(glm::floor(p + t * direction)), glm::ivec3(0), glm::ivec3(grid.resolution - 1));
   VoxelHit slipped;  // the last side through which the ray slipped, see the shader
-  float front = -1.0f;
   for (int turn = 0; turn < 3 * grid.resolution + 3; ++turn) {
     const uint32_t voxel = voxels.at(cell);
     const glm::vec3 walls = (glm::vec3(cell) + ahead - p) * inverse + never;
@@ -105,13 +109,9 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
                            glm::clamp(distance[second], t * grid.cell, std::max(t, next) * grid.cell)};
         if (met == Meeting::Met) return hit;
         const float plane = distance[second];
-        if (plane > next * grid.cell) {
-          front = next;
-        } else if (plane < t * grid.cell ? front == t
-                                         : surfaceContinues(voxels, cell, voxels.surface[hit.side],
-                                                            origin + plane * direction)) {
+        if (plane >= t * grid.cell && slipsThrough(voxels, cell, voxels.surface[hit.side],
+                                                   origin + plane * direction, plane > next * grid.cell))
           slipped = hit;
-        }
       }
     }
     const int through = walls.x == next ? 0 : walls.y == next ? 1 : 2;
