@@ -38,10 +38,15 @@ void main() {
   // The normals of one side can cancel if three or more meet; any direction on that side will do.
   float len = length(normal);
   normal = len > 1e-3 ? normal / len : vec3(side == 0u ? 0.57735027 : -0.57735027);
+  // As seen along the axis of its side, the surface covers no more than a face of the cell, and what lies behind its
+  // emissive part does not dim that.
+  float face = 4294967296.0 / max(max(abs(normal.x), abs(normal.y)), abs(normal.z));
+  float emissive = (sumAt(word + 14u) - area) / (kEmissiveWeight - 1.0);
+  vec3 emission = sums3At(word + 8u) / max(emissive, min(area, face));
   float object = float(0xffffu - (sums.words[word + 28u] & 0xffffu));
   uint piece = sums.words[word + 29u], mask = (1u << kTriangleBits) - 1u;
   float triangle = piece == 0u ? 0.0 : float(mask - (piece & mask));  // below 2^24: exact
   voxelsSurface.sides[2u * voxel + side] =
       VoxelSide(position, area * (1.0 / 4294967296.0) * grid.cell * grid.cell, normal, object,
-                sums3At(word + 2u) * inverse, triangle, sums3At(word + 8u) * inverse, 0.0);
+                sums3At(word + 2u) * inverse, triangle, emission, 0.0);
 }

@@ -22,7 +22,7 @@ SHARED_CONSTANT int kBrickWidth = 4, kBrickHeight = 4, kBrickDepth = 2;
 
 SHARED_CONSTANT uint kNoSide = 0xffffffffu;  // in place of the number of a side: there is none
 
-// One side of a voxel: averages over the surface in it.
+// One side of a voxel: averages over the surface in it (passes/geometry.md, voxelize).
 struct VoxelSide {
   vec3 position SHARED_ZERO;  // world space, m
   float area SHARED_ZERO;     // m^2 of surface; 0 if the side is empty

@@ -49,9 +49,9 @@ uint meetsSide(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 norm
              : kPassed;
 }
 
-// Whether a ray that only passed a side in `cell` slipped through the surface that the side represents: if it crosses the
-// plane beyond the cell, within the reach of the side; if it does so within the cell, where the surface goes on in a next
-// cell that way. place: where the ray crosses the plane.
+// Whether a ray that only passed a side in `cell` slipped through the surface that the side represents: if it crosses
+// the plane beyond the cell, within the reach of the side; if it does so within the cell, where the surface goes on in
+// a next cell that way. place: where the ray crosses the plane, in the cell or beyond.
 bool slipsThrough(VoxelGrid grid, ivec3 cell, uint side, vec3 place, bool beyond) {
   VoxelSide s = loadSide(side);
   vec3 off = place - s.position;
@@ -77,9 +77,9 @@ int settle(int at, int from, int stride, float next, float before, float t, bool
 // unit, on the side to which the ray goes (for a ray that starts on no surface, the direction itself). A side is hit if
 // it faces the ray, is met within its cell and lies in front of the start's tangent plane; the last condition skips the
 // ray's own surface and the back of a thin wall. If both sides of a voxel qualify, the one that faces the ray more is
-// hit; a voxel without such a side is passed. A slit between sides is no hole in a wall: a ray that leaves the grid hits
-// the last side through which it slipped, if any. What it passes beyond an edge, for example a lamp in the air, it does
-// not hit.
+// hit; a voxel without such a side is passed. A slit between sides is no hole in a wall: a ray that leaves the grid
+// hits the last side through which it slipped, if any. What it passes beyond an edge, for example a lamp in the air, it
+// does not hit.
 //
 // The walk goes from cell to cell through the nearest wall (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for
 // Ray Tracing", Eurographics 1987). The distances to the walls follow from the cell's integer coordinates, so no
@@ -112,6 +112,7 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
   vec3 ahead = vec3(greaterThan(direction, vec3(0.0)));  // the wall ahead: corner 0 or 1 of the cell
   uint brick = imageLoad(voxelsOccupied, occupiedBrick(cell)).r;
   bool inside = true, full = (brick & occupiedBit(cell)) != 0u;
+  float front = -1.0;  // where the ray last left a cell in front of its side; behind that of the next it has slipped
   for (int turn = 0; inside;) {
     // Empty space is crossed in a loop of its own: a CPU device executes everything in a loop for all rays of a group
     // in every turn, and most cells are empty.
@@ -149,9 +150,11 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
       float plane = second ? distance1 : distance0;
       VoxelHit hit = VoxelHit(second ? side + 1u : side, clamp(plane, t * grid.cell, max(t, next) * grid.cell));
       if (met == kMet) return hit;
-      if (plane >= t * grid.cell &&
-          slipsThrough(grid, cell, hit.side, origin + plane * direction, plane > next * grid.cell))
+      bool beyond = plane > next * grid.cell;
+      if (plane < t * grid.cell ? front == t
+                                : slipsThrough(grid, cell, hit.side, origin + plane * direction, beyond))
         slipped = hit;
+      if (beyond) front = next;
     }
     full = false;  // on to the next cell
   }

@@ -91,6 +91,7 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
   glm::ivec3 cell =
       glm::clamp(glm::ivec3(glm::floor(p + t * direction)), glm::ivec3(0), glm::ivec3(grid.resolution - 1));
   VoxelHit slipped;  // the last side through which the ray slipped, see the shader
+  float front = -1.0f;
   for (int turn = 0; turn < 3 * grid.resolution + 3; ++turn) {
     const uint32_t voxel = voxels.at(cell);
     const glm::vec3 walls = (glm::vec3(cell) + ahead - p) * inverse + never;
@@ -109,9 +110,12 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
                            glm::clamp(distance[second], t * grid.cell, std::max(t, next) * grid.cell)};
         if (met == Meeting::Met) return hit;
         const float plane = distance[second];
-        if (plane >= t * grid.cell && slipsThrough(voxels, cell, voxels.surface[hit.side],
-                                                   origin + plane * direction, plane > next * grid.cell))
+        const bool beyond = plane > next * grid.cell;
+        if (plane < t * grid.cell
+                ? front == t
+                : slipsThrough(voxels, cell, voxels.surface[hit.side], origin + plane * direction, beyond))
           slipped = hit;
+        if (beyond) front = next;
       }
     }
     const int through = walls.x == next ? 0 : walls.y == next ? 1 : 2;

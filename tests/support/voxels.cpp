@@ -1,6 +1,7 @@
 #include "tests/support/voxels.h"
 #include "framework/scene/scene.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -223,7 +224,10 @@ scene::VoxelSide resolveSide(const scene::VoxelGrid& grid, uint32_t linear, uint
   result.normal = length > 1e-3f ? normal / length : vec3(side == 0 ? 0.57735027f : -0.57735027f);
   result.object = float(0xffffu - (sums.object & 0xffffu));
   result.reflectance = average(sums.reflectance, sums.area);
-  result.emission = average(sums.emission, sums.area);
+  const glm::vec3 along = glm::abs(result.normal);
+  const double face = 4294967296.0 / double(std::max({along.x, along.y, along.z})),
+               emissive = double(sums.weight - sums.area) / 255;
+  result.emission = average(sums.emission, uint64_t(std::max(emissive, std::min(double(sums.area), face))));
   return result;
 }
 

@@ -151,10 +151,11 @@ std::vector<Crossing> crossings(const Volume& v, glm::dvec3 origin, glm::dvec3 d
   return list;
 }
 
-// Whether a ray that passed a side slipped through a slit beside it.
-bool slips(const Volume& v, const Crossing& c, glm::dvec3 origin, glm::dvec3 direction, bool& unclear) {
+// Whether a ray that passed a side slipped through a slit beside it. before: the crossing before this one.
+bool slips(const Volume& v, const Crossing& c, const Crossing* before, glm::dvec3 origin,
+           glm::dvec3 direction, bool& unclear) {
   unclear |= std::abs(c.plane - c.out) < 1e-4 || std::abs(c.plane - c.in) < 1e-4;
-  if (c.plane < c.in) return false;
+  if (c.plane < c.in) return before && before->plane > before->out && std::abs(before->out - c.in) < 1e-4;
   const VoxelSide& side = v.surface[c.side];
   glm::dvec3 off = origin + c.plane * direction - glm::dvec3(side.position);
   if (c.plane > c.out) {
@@ -178,8 +179,9 @@ bool slips(const Volume& v, const Crossing& c, glm::dvec3 origin, glm::dvec3 dir
 BruteForce bruteForce(const Volume& v, glm::dvec3 origin, glm::dvec3 direction, glm::dvec3 normal) {
   BruteForce best;
   const std::vector<Crossing> list = crossings(v, origin, direction, normal, best);
-  for (const Crossing& c : list) {
-    if (!c.met && !slips(v, c, origin, direction, best.unclear)) continue;
+  for (size_t i = 0; i < list.size(); ++i) {
+    const Crossing& c = list[i];
+    if (!c.met && !slips(v, c, i > 0 ? &list[i - 1] : nullptr, origin, direction, best.unclear)) continue;
     best.side = c.side, best.cellIn = c.in, best.cellOut = c.out;
     if (c.met) break;
   }
@@ -330,8 +332,8 @@ TEST(VoxelTrace, SmallSidesArePassed) {
   EXPECT_EQ(traceVoxels(v.voxels(), {0.5f, 3.2f, 3.0f}, along, along).side, 1u);
 }
 
-// Slits between the sides of a wall let no ray through: where the surface goes on beside a side that is too small, and
-// where a ray leaves the last cell in front of the plane that it reaches just beyond.
+// Slits between the sides of a wall let no ray through: where the surface goes on beside a side that is too small, where
+// a ray leaves the last cell in front of the plane that it reaches just beyond, and between neighbours at other depths.
 TEST(VoxelTrace, WallsHaveNoSlits) {
   const glm::vec3 back(-1, 0, 0), along(1, 0, 0), up = glm::normalize(glm::vec3(0.5f, 1, 0));
   Volume v(8, {glm::vec3(0), 1, 8});
@@ -346,6 +348,12 @@ TEST(VoxelTrace, WallsHaveNoSlits) {
   EXPECT_EQ(traceVoxels(v.voxels(), {0.5f, 3.2f, 3.9f}, along, along).side, kNoSide) << "beyond its edge";
   EXPECT_EQ(traceVoxels(v.voxels(), {2.4f, 5.1f, 3.5f}, up, up).side, 11u) << "0.7 above, at y = 6.1";
   EXPECT_EQ(traceVoxels(v.voxels(), {2.2f, 5.1f, 3.5f}, up, up).side, kNoSide) << "1.1 above";
+
+  Volume stepped(8, {glm::vec3(0), 1, 8});
+  const glm::vec3 steep = glm::normalize(glm::vec3(0.1f, 1, 0));
+  stepped.add({2, 3, 3}, {}, makeSide({2.9f, 3.5f, 3.5f}, back));
+  stepped.add({2, 4, 3}, {}, makeSide({2.1f, 4.5f, 3.5f}, back));
+  EXPECT_EQ(traceVoxels(stepped.voxels(), {2.1f, 1.5f, 3.5f}, steep, steep).side, 3u);
 }
 
 // From everywhere in a closed room, rays end on a wall. Where walls meet they share a side whose normal lies between
