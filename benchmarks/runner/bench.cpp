@@ -12,6 +12,7 @@
 #include <memory>
 #include <set>
 
+#include "benchmarks/runner/estimate.h"
 #include "benchmarks/runner/folder.h"
 #include "benchmarks/runner/job.h"
 #include "benchmarks/runner/passes.h"
@@ -91,6 +92,7 @@ class Bench {
  private:
   void chooseJobs();
   void identify();
+  std::vector<std::string> referencesToMake(const Job& job);
   void refuseOrRemove(const Job& job, const std::string& key, const Fingerprint& now) const;
   void openDevice();
   std::optional<nlohmann::ordered_json> tryTwice(const Job& job, const Fingerprint& fingerprint);
@@ -99,6 +101,7 @@ class Bench {
   void finish();
   std::string command() const;
   std::map<std::string, std::string> missingScenes(const std::vector<StoredResult>& results) const;
+  std::string left() const;
   void makePage() const;
   template <class... Args>
   void say(fmt::format_string<Args...> format, Args&&... args) const {
@@ -118,9 +121,11 @@ class Bench {
   struct Task {
     const Job* job = nullptr;
     Fingerprint fingerprint;
+    std::vector<std::string> references;  // names of those that do not exist yet
   };
   std::vector<Task> tasks_;                     // of this shard, not yet done
   std::map<std::string, std::string> missing_;  // scene -> why
+  Estimate estimate_;
   size_t done_ = 0;
   size_t lost_ = 0;  // jobs without a result, as the device was lost twice
 };
@@ -165,6 +170,18 @@ void Bench::refuseOrRemove(const Job& job, const std::string& key, const Fingerp
   }
 }
 
+// The names of those that do not exist yet, of which the estimate is told.
+std::vector<std::string> Bench::referencesToMake(const Job& job) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const BenchRunner::Reference& r : runner_->references(job)) {
+    if (fs::exists(folder_.reference(r.name), ignored)) continue;
+    estimate_.addReference(r.name, double(job.size.x) * double(job.size.y) * double(job.spp));
+    names.push_back(r.name);
+  }
+  return names;
+}
+
 // Finds every mistake in the jobs, and the jobs that are already done, before anything is rendered.
 void Bench::identify() {
   for (size_t i = 0; i < wanted_.size(); ++i) {
@@ -182,7 +199,8 @@ void Bench::identify() {
     if (!folder_.results(job).empty()) {
       ++done_;
     } else if (i % shard_.count == shard_.index) {
-      tasks_.push_back({&job, *fingerprint});
+      tasks_.push_back({&job, *fingerprint, referencesToMake(job)});
+      estimate_.addJob(job);
     }
     if (session::interrupted()) throw Error(ExitCode::Interrupted, "interrupted before the first job");
   }
@@ -204,18 +222,18 @@ std::optional<nlohmann::ordered_json> Bench::tryTwice(const Job& job, const Fing
   return std::nullopt;
 }
 
+std::string Bench::left() const {
+  const auto seconds = estimate_.secondsLeft();
+  return seconds && *seconds > 0 ? ", " + session::formatDuration(*seconds) + " left" : "";
+}
+
 void Bench::measure() {
-  const Clock::time_point start = Clock::now();
   const auto since = [](Clock::time_point t) {
     return std::chrono::duration<double>(Clock::now() - t).count();
   };
   for (size_t i = 0; i < tasks_.size(); ++i) {
     const Task& task = tasks_[i];
-    const std::string left =
-        i == 0
-            ? ""
-            : ", " + session::formatDuration(since(start) / double(i) * double(tasks_.size() - i)) + " left";
-    progress_.setPrefix(fmt::format("job {}/{}{}: ", i + 1, tasks_.size(), left));
+    progress_.setPrefix(fmt::format("job {}/{}{}: ", i + 1, tasks_.size(), left()));
     const Clock::time_point jobStart = Clock::now();
     try {
       if (auto result = tryTwice(*task.job, task.fingerprint)) {
@@ -223,6 +241,7 @@ void Bench::measure() {
         folder_.write(*task.job, task.fingerprint.key(*task.job), *result);
       } else {
         ++lost_;
+        estimate_.finish(*task.job, since(jobStart), runner_->takeMadeReferences(), task.references);
         continue;
       }
     } catch (const Error& e) {
@@ -231,10 +250,9 @@ void Bench::measure() {
                   "the same command goes on from there");
     }
     progress_.clear();
-    const double remaining = since(start) / double(i + 1) * double(tasks_.size() - i - 1);
+    estimate_.finish(*task.job, since(jobStart), runner_->takeMadeReferences(), task.references);
     say("[{}/{}] {}: {}{}\n", i + 1, tasks_.size(), task.job->name(),
-        session::formatDuration(since(jobStart)),
-        i + 1 < tasks_.size() ? ", " + session::formatDuration(remaining) + " left" : "");
+        session::formatDuration(since(jobStart)), left());
   }
   progress_.setPrefix("");
 }
@@ -364,6 +382,9 @@ ExitCode Bench::run() {
   }
   identify();
   if (done_ > 0) say("{} of {} jobs are done already\n", done_, wanted_.size());
+  if (!tasks_.empty())
+    say("{} jobs to measure, {} references of {:.3g} million paths to render for them\n", tasks_.size(),
+        estimate_.references(), estimate_.paths() / 1e6);
   measure();
   if (done_ + tasks_.size() > lost_) finish();
   if (lost_ > 0)

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "benchmarks/runner/pass_code.h"
@@ -14,10 +14,8 @@
 #include "framework/base/paths.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/report/report.h"
-#include "framework/image/error_picture.h"
-#include "framework/image/flip.h"
+#include "framework/image/metrics.h"
 #include "framework/scene/load.h"
-#include "framework/session/compared.h"
 #include "framework/session/inputs.h"
 #include "framework/session/interrupt.h"
 
@@ -32,7 +30,6 @@ constexpr const char* kLayers[] = {"radiance", "direct", "indirect", "half_a", "
 bool isLayer(const std::string& output) {
   return std::find(std::begin(kLayers), std::end(kLayers), output) != std::end(kLayers);
 }
-constexpr double kErrorScale = 0.1, kTemporalScale = 0.02;  // errors of the lightest colour in error pictures
 constexpr int kMaxSearchSteps = 12;
 constexpr double kSearchTolerance = 0.04;  // relative, of the number searched for
 
@@ -72,21 +69,6 @@ std::string hashOf(std::string_view text) {
 
 // null if it is not known.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
-std::vector<float> changeErrors(const image::Picture& now, const image::Picture& before,
-                                const image::Picture& wanted, const image::Picture& wantedBefore) {
-  std::vector<float> errors(size_t(now.display.width) * now.display.height);
-  for (size_t i = 0; i < errors.size(); ++i) {
-    double sum = 0;
-    for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
-      const double d = double(now.display.data[c]) - before.display.data[c] -
-                       (double(wanted.display.data[c]) - wantedBefore.display.data[c]);
-      sum += d * d;
-    }
-    errors[i] = float(std::sqrt(sum / 3));
-  }
-  return errors;
-}
 
 // Time of the second eye of stereo graphs in milliseconds and as a share of the first eye's whole frame, and the
 // second eye's share of new pixels.
@@ -262,9 +244,9 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
   throwIfInterrupted();
   for (graph::FrameResult& result : kept) {
     sequence.frames.push_back(toFile(*run, result));
-    if (&result != &kept.back())  // only the last frame's layers are used individually
+    if (&result != &kept.back())  // only the last frame needs its other layers
       std::erase_if(sequence.frames.back().layers,
-                    [&](const image::Layer& l) { return l.name != job.layer; });
+                    [&](const image::Layer& l) { return l.name != job.layer && l.name != "indirect"; });
   }
   session::RunInfo info;
   info.device = device_->name();
@@ -275,12 +257,12 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
   return sequence;
 }
 
-BenchRunner::Reference BenchRunner::referenceOf(const Job& job, uint64_t frame) {
+BenchRunner::Reference BenchRunner::referenceOf(const Job& job, uint64_t frame, const std::string& parts) {
   Hasher hash;
   for (const uint64_t n : {scene_.hash, frame, uint64_t(job.size.x), uint64_t(job.size.y),
                            std::bit_cast<uint64_t>(job.frameRate), uint64_t(kReferenceSeed)})
     hash.add(n);
-  hash.add(std::string_view(referenceParts(job).dump()));
+  hash.add(std::string_view(parts));
   return {fmt::format("{}-{}x{}-f{}-{}", std::filesystem::path(job.scene).stem().string(), job.size.x,
                       job.size.y, frame, session::formatHash(hash.value())),
           frame};
@@ -290,8 +272,9 @@ std::vector<BenchRunner::Reference> BenchRunner::references(const Job& job) {
   std::vector<Reference> list;
   std::string why;
   if (!job.needsReference() || !useScene(job, why)) return list;
+  const std::string parts = referenceParts(job).dump();
   for (uint32_t f = job.temporal ? 0 : job.frames - 1; f < job.frames; ++f)
-    list.push_back(referenceOf(job, uint64_t(job.first) + f));
+    list.push_back(referenceOf(job, uint64_t(job.first) + f, parts));
   return list;
 }
 
@@ -310,9 +293,11 @@ image::File BenchRunner::reference(const Job& job, uint64_t frame) {
   own.set = referenceParameters(job);
   own.seed = kReferenceSeed, own.first = uint32_t(frame), own.frames = 1, own.warmup = 0;
   own.temporal = own.error = false, own.pictures = true;
+  const std::string name = referenceOf(job, frame, referenceParts(job).dump()).name;
   return folder_.findOrMakeReference(
-      referenceOf(job, frame).name,
+      name,
       [&](const std::function<void()>& alive) {
+        const auto start = std::chrono::steady_clock::now();
         progress_.stage(fmt::format("reference of frame {}", frame));
         const auto run = makeRun(own, true);
         run->prepare();
@@ -322,7 +307,10 @@ image::File BenchRunner::reference(const Job& job, uint64_t frame) {
         auto result = run->executor().next();
         throwIfInterrupted();
         progress_.clear();
-        return toFile(*run, *result);
+        image::File file = toFile(*run, *result);
+        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+        made_.emplace_back(name, spent.count());
+        return file;
       },
       [&] {
         progress_.stage(
@@ -333,84 +321,6 @@ image::File BenchRunner::reference(const Job& job, uint64_t frame) {
 
 void BenchRunner::writePicture(const std::string& name, const image::Image& picture) const {
   image::write(folder_.picture(name), {{"", picture}});
-}
-
-namespace {
-
-double sumOf(const image::Image& radiance) {
-  return std::accumulate(radiance.data.begin(), radiance.data.end(), 0.0);
-}
-
-}  // namespace
-
-Json BenchRunner::errors(const Job& job, const image::File& last) {
-  const uint64_t frame = uint64_t(job.first) + job.frames - 1;
-  const image::File truth = reference(job, frame);
-  progress_.stage("measuring");
-  session::CompareOptions options;
-  options.layer = job.layer;
-  const session::Compared c = session::compareRadiance("picture", last, "reference", truth, options);
-  const auto whole = image::compare(c.image, c.reference, c.halves, c.fovea, image::kDefaultPixelsPerDegree);
-  std::optional<image::PerRegion<image::Measures>> indirect;
-  if (last.find("indirect")) {
-    options.layer = "indirect";
-    const session::Compared i = session::compareRadiance("picture", last, "reference", truth, options);
-    indirect = image::compare(i.image, i.reference, i.halves, i.fovea, image::kDefaultPixelsPerDegree);
-  }
-  image::PerRegion<double> floor{image::kUnknown, image::kUnknown, image::kUnknown};
-  if (c.perfectIndirect) floor = image::meanSquaredError(*c.perfectIndirect, c.reference, c.fovea);
-  const auto region = [&](const image::Measures& m, const image::Measures* i, double directFloor) {
-    return Json{{"mse", number(m.mse)},
-                {"psnr", number(m.psnr)},
-                {"flip", number(m.flip)},
-                {"blocks", number(i ? i->blocks : m.blocks)},
-                {"relmse", i ? number(i->relMse) : Json()},
-                {"noise_floor", number(m.noiseFloor)},
-                {"direct_floor", number(directFloor)}};
-  };
-  if (job.pictures) {
-    const uint32_t width = c.image.display.width;
-    writePicture(job.name(), c.image.display);
-    writePicture(job.name() + "-reference", c.reference.display);
-    writePicture(job.name() + "-error",
-                 image::errorPicture(image::pixelErrors(c.image, c.reference), width, kErrorScale, &c.fovea));
-  }
-  Json json = {
-      {"fovea", region(whole.fovea, indirect ? &indirect->fovea : nullptr, floor.fovea)},
-      {"periphery", region(whole.periphery, indirect ? &indirect->periphery : nullptr, floor.periphery)},
-      {"whole", region(whole.whole, indirect ? &indirect->whole : nullptr, floor.whole)}};
-  json["light"] = number(sumOf(c.image.radiance) / sumOf(c.reference.radiance));
-  json["disc"] = {c.fovea.x, c.fovea.y, c.fovea.radius};
-  return json;
-}
-
-Json BenchRunner::temporal(const Job& job, const Sequence& sequence) {
-  image::SequenceComparison comparison;
-  session::Compared previous;
-  session::CompareOptions options;
-  options.layer = job.layer;
-  for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    session::Compared c = session::compareRadiance("picture", sequence.frames[i], "reference",
-                                                   reference(job, job.first + i), options);
-    if (job.pictures && i > 0 && i + 1 == sequence.frames.size())
-      writePicture(job.name() + "-temporal",
-                   image::errorPicture(changeErrors(c.image, previous.image, c.reference, previous.reference),
-                                       c.image.display.width, kTemporalScale, &c.fovea));
-    if (i + 2 == sequence.frames.size()) previous = c;
-    comparison.add(std::move(c.image), std::move(c.reference), std::move(c.halves), c.fovea);
-  }
-  const auto region = [](const image::SequenceMeasures& m) {
-    return Json{{"mse", number(m.mse)},
-                {"mse_prime", number(m.change)},
-                {"excess", number(m.excess)},
-                {"reference_mse_prime", number(m.referenceChange)},
-                {"noise_floor", number(m.noiseFloor)},
-                {"excess_noise_floor", number(m.excessNoiseFloor)}};
-  };
-  const auto result = comparison.result();
-  return {{"fovea", region(result.fovea)},
-          {"periphery", region(result.periphery)},
-          {"whole", region(result.whole)}};
 }
 
 // ---- The number of a parameter that reaches another graph's error

@@ -5,6 +5,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "benchmarks/runner/folder.h"
 #include "benchmarks/runner/suite.h"
@@ -32,6 +34,8 @@ class BenchRunner {
   };
   // The references with which the job is compared: those of every frame, or that of the last one.
   std::vector<Reference> references(const Job& job);
+  // The references made since the last call, and the seconds that each took.
+  std::vector<std::pair<std::string, double>> takeMadeReferences() { return std::exchange(made_, {}); }
   // Makes the reference unless it exists; returns false if it did. Throws as measure() does.
   bool makeReference(const Job& job, const Reference& wanted);
 
@@ -44,7 +48,7 @@ class BenchRunner {
   std::unique_ptr<session::GraphRun> makeRun(const Job& job, bool pictures);
   Sequence render(const Job& job);
   image::File toFile(const session::GraphRun& run, graph::FrameResult& result) const;
-  Reference referenceOf(const Job& job, uint64_t frame);
+  Reference referenceOf(const Job& job, uint64_t frame, const std::string& parts);
   image::File reference(const Job& job, uint64_t frame);
   nlohmann::ordered_json referenceParts(const Job& job);
   nlohmann::ordered_json errors(const Job& job, const image::File& last);
@@ -59,6 +63,7 @@ class BenchRunner {
   std::string sceneName_;
   scene::Scene scene_;
   scene::Geometry geometry_;
+  std::vector<std::pair<std::string, double>> made_;
   std::map<std::string, std::string> missing_;  // optional scenes that are missing, and why
 };
 

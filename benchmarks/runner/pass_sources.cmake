@@ -75,7 +75,7 @@ foreach(type ${folders})
   endif()
 endforeach()
 code(framework "framework/gpu/|${execution}" "framework/(base|host|scene|include)/|shaders/")
-code(measures "benchmarks/runner/(job|compared|timings)[.]|framework/session/graph_run[.]" "framework/(image|include)/")
+code(measures "benchmarks/runner/(job|job_errors|compared|timings)[.]|framework/session/graph_run[.]" "framework/(image|include)/")
 set(commit "")
 execute_process(COMMAND git -C ${SOURCE} rev-parse --short HEAD OUTPUT_VARIABLE commit ERROR_QUIET
   OUTPUT_STRIP_TRAILING_WHITESPACE)

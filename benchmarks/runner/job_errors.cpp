@@ -1,0 +1,129 @@
+// Errors of the pictures and sequences of a job.
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "benchmarks/runner/job.h"
+#include "framework/image/error_picture.h"
+#include "framework/image/flip.h"
+#include "framework/image/metrics.h"
+#include "framework/session/compared.h"
+
+namespace fovea::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kErrorScale = 0.1, kTemporalScale = 0.02;  // errors of the lightest colour in error pictures
+constexpr const char* kIndirect = "indirect";
+
+// null if it is not known.
+Json known(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+double sumOf(const image::Image& radiance) {
+  return std::accumulate(radiance.data.begin(), radiance.data.end(), 0.0);
+}
+
+double lightOf(const session::Compared& c) { return sumOf(c.image.radiance) / sumOf(c.reference.radiance); }
+
+std::vector<float> changeErrors(const image::Picture& now, const image::Picture& before,
+                                const image::Picture& wanted, const image::Picture& wantedBefore) {
+  std::vector<float> errors(size_t(now.display.width) * now.display.height);
+  for (size_t i = 0; i < errors.size(); ++i) {
+    double sum = 0;
+    for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
+      const double d = double(now.display.data[c]) - before.display.data[c] -
+                       (double(wanted.display.data[c]) - wantedBefore.display.data[c]);
+      sum += d * d;
+    }
+    errors[i] = float(std::sqrt(sum / 3));
+  }
+  return errors;
+}
+
+Json regionOf(const image::Measures& m, const image::Measures* indirect, double directFloor) {
+  return {{"mse", known(m.mse)},
+          {"psnr", known(m.psnr)},
+          {"flip", known(m.flip)},
+          {"blocks", known(indirect ? indirect->blocks : m.blocks)},
+          {"relmse", indirect ? known(indirect->relMse) : Json()},
+          {"indirect_mse", indirect ? known(indirect->mse) : Json()},
+          {"noise_floor", known(m.noiseFloor)},
+          {"direct_floor", known(directFloor)}};
+}
+
+Json regionOf(const image::SequenceMeasures& m, const image::SequenceMeasures* indirect) {
+  return {{"mse", known(m.mse)},
+          {"mse_prime", known(m.change)},
+          {"excess", known(m.excess)},
+          {"indirect_mse_prime", indirect ? known(indirect->change) : Json()},
+          {"indirect_excess", indirect ? known(indirect->excess) : Json()},
+          {"reference_mse_prime", known(m.referenceChange)},
+          {"noise_floor", known(m.noiseFloor)},
+          {"excess_noise_floor", known(m.excessNoiseFloor)}};
+}
+
+}  // namespace
+
+Json BenchRunner::errors(const Job& job, const image::File& last) {
+  const uint64_t frame = uint64_t(job.first) + job.frames - 1;
+  const image::File truth = reference(job, frame);
+  progress_.stage("measuring");
+  session::CompareOptions options;
+  options.layer = job.layer;
+  const session::Compared c = session::compareRadiance("picture", last, "reference", truth, options);
+  const auto whole = image::compare(c.image, c.reference, c.halves, c.fovea, image::kDefaultPixelsPerDegree);
+  std::optional<image::PerRegion<image::Measures>> indirect;
+  double indirectLight = image::kUnknown;
+  if (last.find(kIndirect)) {
+    options.layer = kIndirect;
+    const session::Compared i = session::compareRadiance("picture", last, "reference", truth, options);
+    indirect = image::compare(i.image, i.reference, i.halves, i.fovea, image::kDefaultPixelsPerDegree);
+    indirectLight = lightOf(i);
+  }
+  image::PerRegion<double> floor{image::kUnknown, image::kUnknown, image::kUnknown};
+  if (c.perfectIndirect) floor = image::meanSquaredError(*c.perfectIndirect, c.reference, c.fovea);
+  if (job.pictures) {
+    const uint32_t width = c.image.display.width;
+    writePicture(job.name(), c.image.display);
+    writePicture(job.name() + "-reference", c.reference.display);
+    writePicture(job.name() + "-error",
+                 image::errorPicture(image::pixelErrors(c.image, c.reference), width, kErrorScale, &c.fovea));
+  }
+  return {
+      {"fovea", regionOf(whole.fovea, indirect ? &indirect->fovea : nullptr, floor.fovea)},
+      {"periphery", regionOf(whole.periphery, indirect ? &indirect->periphery : nullptr, floor.periphery)},
+      {"whole", regionOf(whole.whole, indirect ? &indirect->whole : nullptr, floor.whole)},
+      {"light", known(lightOf(c))},
+      {"indirect_light", known(indirectLight)},
+      {"disc", {c.fovea.x, c.fovea.y, c.fovea.radius}}};
+}
+
+Json BenchRunner::temporal(const Job& job, const Sequence& sequence) {
+  image::SequenceComparison whole, indirect;
+  session::Compared previous;
+  session::CompareOptions options, indirectOptions;
+  options.layer = job.layer, indirectOptions.layer = kIndirect;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    const image::File& frame = sequence.frames[i];
+    const image::File truth = reference(job, job.first + i);
+    session::Compared c = session::compareRadiance("picture", frame, "reference", truth, options);
+    if (job.pictures && i > 0 && i + 1 == sequence.frames.size())
+      writePicture(job.name() + "-temporal",
+                   image::errorPicture(changeErrors(c.image, previous.image, c.reference, previous.reference),
+                                       c.image.display.width, kTemporalScale, &c.fovea));
+    if (i + 2 == sequence.frames.size()) previous = c;
+    whole.add(std::move(c.image), std::move(c.reference), std::move(c.halves), c.fovea);
+    if (!frame.find(kIndirect)) continue;
+    session::Compared l = session::compareRadiance("picture", frame, "reference", truth, indirectOptions);
+    indirect.add(std::move(l.image), std::move(l.reference), std::move(l.halves), l.fovea);
+  }
+  const auto all = whole.result();
+  std::optional<image::PerRegion<image::SequenceMeasures>> light;
+  if (indirect.frames() > 1) light = indirect.result();
+  return {{"fovea", regionOf(all.fovea, light ? &light->fovea : nullptr)},
+          {"periphery", regionOf(all.periphery, light ? &light->periphery : nullptr)},
+          {"whole", regionOf(all.whole, light ? &light->whole : nullptr)}};
+}
+
+}  // namespace fovea::bench
