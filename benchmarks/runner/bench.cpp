@@ -102,7 +102,7 @@ class Bench {
   std::string command() const;
   std::map<std::string, std::string> missingScenes(const std::vector<StoredResult>& results) const;
   std::string left() const;
-  void makePage() const;
+  void makePage(const std::string& script, const std::string& page) const;
   template <class... Args>
   void say(fmt::format_string<Args...> format, Args&&... args) const {
     if (options_.quiet) return;
@@ -141,6 +141,7 @@ void Bench::chooseJobs() {
   if (!options_.size.empty()) overrides.size = session::parseSize(options_.size);
   overrides.seeds = options_.seeds;
   overrides.scenes = session::sceneNames(options_.scenes);
+  overrides.scale = options_.scale;
   suite_ = loadSuite(options_.suite, dataFolders("benchmarks/suites"), overrides);
   for (const Job& job : suite_.jobs) {
     chosen_.push_back(options_.only.empty() || matchesGlob(options_.only, job.name()));
@@ -288,15 +289,14 @@ void Bench::makeReferences() {
   say("{} references: {} made, {} were there\n", made + there, made, there);
 }
 
-// The page needs Python and matplotlib; without them, only the tables are written.
-void Bench::makePage() const {
+// Runs a script of benchmarks/, which needs Python and matplotlib; without them, only the tables are written.
+void Bench::makePage(const std::string& name, const std::string& page) const {
   fs::path script;
   for (const fs::path& folder : dataFolders("benchmarks"))
-    if (script.empty() && fs::exists(folder / "report.py")) script = folder / "report.py";
+    if (script.empty() && fs::exists(folder / name)) script = folder / name;
   if (script.empty()) {
-    std::fprintf(
-        stderr,
-        "fovea: warning: benchmarks/report.py is not installed: there are tables, but no report.html\n");
+    std::fprintf(stderr, "fovea: warning: benchmarks/%s is not installed: there are tables, but no %s\n",
+                 name.c_str(), page.c_str());
     return;
   }
   std::fflush(stdout);
@@ -306,10 +306,12 @@ void Bench::makePage() const {
     _exit(127);
   }
   int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    std::fprintf(stderr,
-                 "fovea: warning: no report.html: it needs python3 with matplotlib (apt-get install "
-                 "python3-matplotlib); the tables are there\n");
+  if (child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0)
+    return;
+  std::fprintf(stderr,
+               "fovea: warning: no %s: it needs python3 with matplotlib (apt-get install "
+               "python3-matplotlib); the tables are there\n",
+               page.c_str());
 }
 
 // Includes scenes that an earlier process found missing and this one did not look for.
@@ -327,6 +329,7 @@ std::map<std::string, std::string> Bench::missingScenes(const std::vector<Stored
 // The command that produces all of the tables.
 std::string Bench::command() const {
   std::string text = "fovea bench " + options_.suite + " -o DIR";
+  if (!options_.scale.empty()) text += " --scale " + options_.scale;
   if (!options_.size.empty()) text += " --size " + options_.size;
   if (options_.seeds) text += fmt::format(" --seeds {}", *options_.seeds);
   for (const std::string& scene : options_.scenes) text += " --scene " + scene;
@@ -346,10 +349,13 @@ void Bench::finish() {
   say("{}", writeTables(folder_, suite_, results, missingScenes(results), command()));
   say("{} of {} jobs have results\nwrote {}/tables\n", results.size(), suite_.jobs.size(),
       folder_.path().string());
-  makePage();
-  std::error_code ignored;
-  if (fs::exists(folder_.path() / "report.html", ignored))
-    say("wrote {}/report.html\n", folder_.path().string());
+  const auto make = [&](const std::string& script, const std::string& page) {
+    makePage(script, page);
+    std::error_code ignored;
+    if (fs::exists(folder_.path() / page, ignored)) say("wrote {}/{}\n", folder_.path().string(), page);
+  };
+  make("report.py", "report.html");
+  if (!suite_.page.empty()) make(suite_.page + ".py", suite_.page + "/README.md");
 }
 
 ExitCode Bench::run() {

@@ -11,7 +11,7 @@
 namespace fovea::bench {
 
 struct SuiteOptions {
-  std::string suite, folder, cache, only, shard, size, device;
+  std::string suite, folder, cache, only, shard, size, scale, device;
   std::optional<uint32_t> seeds;
   double frameLimit = session::kFrameLimit;
   std::vector<std::string> scenes, plugins, without;

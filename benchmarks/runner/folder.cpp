@@ -292,9 +292,10 @@ std::vector<StoredResult> mergedResults(const BenchFolder& folder, const std::ve
       std::string why;
       found[i] = resultOf(folder, jobs[i], common, why);
       if (!why.empty() && choice)
-        throw Error(ExitCode::BadInput, "results that cannot be compared: " + why,
-                    "give the same --size, --seeds and --scene, keep them in different folders, or run the "
-                    "suite with --replace");
+        throw Error(
+            ExitCode::BadInput, "results that cannot be compared: " + why,
+            "give the same --scale, --size, --seeds and --scene, keep them in different folders, or run the "
+            "suite with --replace");
       if (!why.empty() && !found[i]) leaveOut(why);
       if (found[i]) common.add(*found[i]);
     }

@@ -1,13 +1,11 @@
 #include "benchmarks/runner/suite.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <set>
 #include <sstream>
 
+#include "benchmarks/runner/scale.h"
 #include "framework/base/files.h"
 #include "framework/base/json.h"
 #include "framework/session/inputs.h"
@@ -46,7 +44,7 @@ struct Settings {
   std::vector<double> frameRates = {42};
   uint32_t first = 40, frames = 1, warmup = 0, seeds = 1, spp = 512, depth = 4;
   std::vector<std::string> measures = {"error"};
-  std::string layer = "radiance";
+  std::string layer = "radiance", paper;
   std::vector<SpeedUp> speedUps;
 };
 
@@ -81,7 +79,11 @@ class SuiteReader {
   void read(const Value& root, Suite& suite) {
     ObjectReader r(root, "", messages_);
     suite.description = r.text("description");
-    suite.paper = r.text("paper");
+    readPage(r, suite);
+    for (auto& [name, scale] : readScales(r, messages_)) {
+      if (name == overrides_.scale) scale_ = std::move(scale);
+      suite.scales.push_back(name);
+    }
     for (const auto& name : texts(r, "optional_scenes")) optional_.insert(name.value);
     Settings head;
     readSettings(r, head);
@@ -95,6 +97,14 @@ class SuiteReader {
   }
 
  private:
+  // The script that it names is run, so it has to be one of those that come with the program.
+  void readPage(ObjectReader& r, Suite& suite) {
+    suite.page = r.text("page");
+    const auto bad = [](unsigned char c) { return !std::isalnum(c) && c != '_'; };
+    if (const Value* page = r.find("page"); page && std::any_of(suite.page.begin(), suite.page.end(), bad))
+      expected(messages_, *page, "page", "the name of a script in benchmarks/, without .py");
+  }
+
   Texts texts(ObjectReader& r, const char* key) {
     Texts list;
     const Value* array = r.array(key);
@@ -232,6 +242,7 @@ class SuiteReader {
     }
     readMeasures(r, s);
     s.layer = r.choice("layer", s.layer, {"radiance", "indirect"});
+    s.paper = r.text("paper", s.paper);
     if (const Value* speed = r.object("speed_up")) {
       ObjectReader rr(*speed, r.pathOf("speed_up"), messages_);
       SpeedUp wanted;
@@ -269,6 +280,8 @@ class SuiteReader {
       messages_.error(value.where.location(), path, "the sweep `" + name + "` occurs twice");
     readSettings(r, s);
     r.finish();
+    if (scale_) applyScale(*scale_, s);
+    if (!s.paper.empty()) suite.papers[name] = s.paper;
     const auto complain = [&](const std::string& message) {
       messages_.error(value.where.location(), path, message);
     };
@@ -292,6 +305,31 @@ class SuiteReader {
       suite.speedUps.push_back(wanted);
     }
     if (!messages_.hasErrors() && !expand(name, s, suite)) complain("a suite has at most 100000 jobs");
+  }
+
+  void applyScale(const Scale& scale, Settings& s) const {
+    if (scale.size && s.sizes.size() == 1) s.sizes = {*scale.size};
+    s.seeds = scale.seeds.value_or(s.seeds);
+    s.spp = scale.spp.value_or(s.spp);
+    s.frames = std::min(s.frames, scale.maxFrames);
+    s.warmup = std::min(s.warmup, scale.maxWarmup);
+    const auto thin = [&](auto& list) { list = thinned(list, scale.maxValues); };
+    const auto thinAll = [&](auto& set) {
+      std::for_each(set.begin(), set.end(), [&](auto& e) { thin(e.second); });
+    };
+    thin(s.sizes), thin(s.frameRates), thinAll(s.set);
+    for (GraphEntry& graph : s.graphs) {
+      thinAll(graph.set);
+      if (graph.warmup) graph.warmup = std::min(*graph.warmup, scale.maxWarmup);
+    }
+    if (scale.scenes.empty() || !overrides_.scenes.empty()) return;
+    const auto isIn = [&](const auto& scene) {
+      return std::find(scale.scenes.begin(), scale.scenes.end(), scene.value) != scale.scenes.end();
+    };
+    Texts kept;
+    std::copy_if(s.scenes.begin(), s.scenes.end(), std::back_inserter(kept), isIn);
+    if (kept.empty() && !s.scenes.empty()) kept = {s.scenes.front()};
+    s.scenes = std::move(kept);
   }
 
   static bool hasLabel(const Settings& s, const std::string& label) {
@@ -396,39 +434,11 @@ class SuiteReader {
 
   Diagnostics& messages_;
   const SuiteOverrides& overrides_;
+  std::optional<Scale> scale_;  // the one that was asked for
   std::set<std::string> optional_;
 };
 
 }  // namespace
-
-std::string Job::name() const {
-  std::string text = sweep + "-" + fs::path(scene).stem().string() + "-" + label;
-  for (const auto& [key, value] : varied) text += "-" + key + "=" + value;
-  for (char& c : text)
-    if (c == '/' || c == ' ' || c == '*' || c == '?') c = '_';
-  return text + "-s" + std::to_string(seed);
-}
-
-nlohmann::ordered_json Job::json() const {
-  nlohmann::ordered_json parameters = nlohmann::ordered_json::object(), axes = parameters;
-  for (const auto& [key, value] : set) parameters[key] = value;
-  for (const auto& [key, value] : varied) axes[key] = value;
-  nlohmann::ordered_json measures = nlohmann::ordered_json::array({"time"});
-  if (error) measures.push_back("error");
-  if (temporal) measures.push_back("temporal");
-  if (pictures) measures.push_back("pictures");
-  nlohmann::ordered_json all = {{"sweep", sweep},           {"scene", scene},    {"graph", graph},
-                                {"label", label},           {"set", parameters}, {"varied", axes},
-                                {"size", {size.x, size.y}}, {"first", first},    {"frames", frames},
-                                {"warmup", warmup},         {"seed", seed},      {"frame_rate", frameRate},
-                                {"measures", measures}};
-  if (needsReference()) all["reference"] = {{"spp", spp}, {"depth", depth}};
-  if (layer != "radiance") all["layer"] = layer;
-  if (match)
-    all["match"] = {{"parameter", match->parameter}, {"like", match->like}, {"like_set", match->likeSet},
-                    {"measure", match->measure},     {"from", match->from}, {"to", match->to}};
-  return all;
-}
 
 Suite parseSuite(std::string_view text, const fs::path& file, const SuiteOverrides& overrides) {
   Diagnostics messages;
@@ -438,6 +448,7 @@ Suite parseSuite(std::string_view text, const fs::path& file, const SuiteOverrid
   const Value root = json::parse(text, file.string());
   SuiteReader(messages, overrides).read(root, suite);
   messages.throwIfErrors();
+  if (!overrides.scale.empty()) checkScale(overrides.scale, suite.scales, suite.name);
   std::vector<std::string> scenes;  // in order of first appearance
   for (const Job& job : suite.jobs)
     if (std::find(scenes.begin(), scenes.end(), job.scene) == scenes.end()) scenes.push_back(job.scene);
@@ -479,11 +490,6 @@ Suite loadSuite(const std::string& nameOrFile, const std::vector<fs::path>& fold
   std::ifstream stream(found, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   return parseSuite(text, found, overrides);
-}
-
-bool matchesGlob(std::string_view pattern, std::string_view name) {
-  if (pattern.find_first_of("*?") == pattern.npos) return name.find(pattern) != name.npos;
-  return fnmatch(std::string(pattern).c_str(), std::string(name).c_str(), FNM_NOESCAPE) == 0;
 }
 
 }  // namespace fovea::bench

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -54,9 +55,13 @@ struct SpeedUp {
 };
 
 struct Suite {
-  std::string name, description, paper;  // paper: table of benchmarks/paper.json to show beside the results
-  std::vector<Job> jobs;                 // grouped by scene, so that each is loaded once
+  std::string name, description;
+  std::string page;       // script in benchmarks/ that writes a page of its own, or ""
+  std::vector<Job> jobs;  // grouped by scene, so that each is loaded once
   std::vector<SpeedUp> speedUps;
+  std::map<std::string, std::string>
+      papers;                       // sweep -> table of benchmarks/paper.json to show beside its results
+  std::vector<std::string> scales;  // their names
   std::filesystem::path file;
 };
 
@@ -64,9 +69,10 @@ struct SuiteOverrides {
   std::optional<glm::uvec2> size;  // for every job that does not vary its size
   std::optional<uint32_t> seeds;
   std::vector<std::string> scenes;  // for every sweep, if there are any
+  std::string scale;                // one of the suite's, or ""; what is given above takes precedence over it
 };
 
-// Throws Error(BadInput) with every mistake in the file and its place.
+// Throws Error(BadInput) with every mistake in the file and its place, and Error(Usage) if there is no such scale.
 Suite parseSuite(std::string_view text, const std::filesystem::path& file,
                  const SuiteOverrides& overrides = {});
 // Loads a file, or a bare name that is looked up in `folders`. Throws Error(BadInput) listing the suites that exist.

@@ -280,16 +280,18 @@ std::string writeTables(const BenchFolder& folder, const Suite& suite,
     for (const SpeedUp& wanted : suite.speedUps)
       if (wanted.sweep == sweep) addSpeedUps(wanted, table);
     for (const char* measure : {"error.fovea.mse", "temporal.fovea.excess"}) addDifferences(measure, table);
-    writeText(folder.table(sweep), csvOf(table, paper, suite.paper));
+    const auto found = suite.papers.find(sweep);
+    const std::string paperTable = found == suite.papers.end() ? "" : found->second;
+    writeText(folder.table(sweep), csvOf(table, paper, paperTable));
     written.push_back({{"sweep", sweep}, {"axes", table.axes}});
-    if (!table.rows.empty()) shown += shownOf(sweep, table, paper, suite.paper);
+    if (!table.rows.empty()) shown += shownOf(sweep, table, paper, paperTable);
   }
   Json files = Json::array();
   for (const StoredResult& result : results) files.push_back(result.file.filename().string());
   const Json report = {{"suite", suite.name},
                        {"description", suite.description},
                        {"command", command},
-                       {"paper", suite.paper},
+                       {"paper", !suite.papers.empty()},
                        {"paper_scenes", paper.value("scenes", Json::object())},
                        {"jobs", suite.jobs.size()},
                        {"missing_scenes", missingScenes},

@@ -14,7 +14,7 @@ namespace {
 void addSuiteOptions(CLI::App& command, bench::SuiteOptions& options) {
   command
       .add_option("SUITE", options.suite,
-                  "Suite: a .json file, or a bare name (quick, table1, table2, ..); or `passes` with --graph")
+                  "Suite: a .json file, or a bare name (quick, paper, ..); or `passes` with --graph")
       ->type_name("");
   command
       .add_option("-o,--output", options.folder,
@@ -45,6 +45,11 @@ void addSuiteOptions(CLI::App& command, bench::SuiteOptions& options) {
           "Scene instead of those of the suite: a file, a bare name, or a folder with a slash\n"
           "(mine/), which stands for the scene files (.json) in it; may be repeated")
       ->type_name("SCENE");
+  command
+      .add_option(
+          "--scale", options.scale,
+          "One of the scales of the suite, such as `small` of `paper`: other sizes and\namounts of work")
+      ->type_name("NAME");
   command.add_option("--size", options.size, "Picture size instead of the suite's, where that does not vary")
       ->type_name("WxH");
   command.add_option("--seeds", options.seeds, "Seeds instead of the suite's number of them")

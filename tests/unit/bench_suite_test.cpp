@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+#include <set>
+
 #include "framework/session/inputs.h"
 #include "graph_support.h"
 #include "places.h"
@@ -94,6 +97,62 @@ TEST(BenchSuite, AFolderStandsForTheSceneFilesInIt) {
   EXPECT_THROW(session::sceneNames({path("empty/")}), Error);
 }
 
+TEST(BenchSuite, AScaleChangesSizesAndAmountsOfWork) {
+  const char* text =
+      R"({"scenes": ["a", "b", "c"], "size": "64x64", "warmup": 9, "seeds": 3, "measures": ["temporal"],
+    "frames": 8, "graphs": ["g", {"graph": "h", "warmup": 1}],
+    "scales": {"tiny": {"size": "16x8", "seeds": 1, "spp": 4, "max_frames": 3, "max_warmup": 2, "max_values": 3,
+                        "scenes": ["c", "a"]}, "own": {}},
+    "sweeps": [{"name": "n", "set": {"v": [1, 2, 3, 4, 5], "w": [1, 2]}}, {"name": "m", "scenes": ["b"], "frames": 2},
+               {"name": "o", "size": ["8x8", "9x9"]}]})";
+  const Suite suite = parseSuite(text, "s.json", {.scale = "tiny"});
+  EXPECT_THAT(suite.scales, ElementsAre("tiny", "own"));
+  std::vector<std::string> first;
+  for (const Job& job : suite.jobs)
+    if (job.sweep == "n" && job.scene == "a" && job.graph == "g") first.push_back(job.name());
+  EXPECT_THAT(first, ElementsAre("n-a-g-v=1-w=1-s1", "n-a-g-v=1-w=2-s1", "n-a-g-v=3-w=1-s1",
+                                 "n-a-g-v=3-w=2-s1", "n-a-g-v=5-w=1-s1", "n-a-g-v=5-w=2-s1"));
+  for (const Job& job : suite.jobs) {
+    EXPECT_EQ(job.spp, 4u);
+    EXPECT_EQ(job.seed, 1u);
+    EXPECT_EQ(job.frames, job.sweep == "m" ? 2u : 3u);  // a limit, not another value
+    EXPECT_EQ(job.warmup, job.graph == "h" ? 1u : 2u);
+    EXPECT_EQ(job.size == glm::uvec2(16, 8), job.sweep != "o");
+    // Scenes of the sweep that the scale has, too, in the order of the sweep; its first scene if there are none.
+    EXPECT_EQ(job.scene == "b", job.sweep == "m");
+  }
+  EXPECT_EQ(namesOf(parseSuite(text, "s.json", {.scale = "own"})), namesOf(parseSuite(text, "s.json")));
+  const Suite mine =
+      parseSuite(text, "s.json", {.size = glm::uvec2(5, 5), .seeds = 2, .scenes = {"z"}, .scale = "tiny"});
+  EXPECT_EQ(mine.jobs.front().size, glm::uvec2(5, 5));
+  EXPECT_EQ(mine.jobs.front().scene, "z");
+  EXPECT_EQ(mine.jobs.back().seed, 2u);
+}
+
+TEST(BenchSuite, AnUnknownScaleIsAMistakeOfTheCommandLine) {
+  const auto errorWith = [](const std::string& scales) {
+    try {
+      parseSuite(R"({"scenes": ["a"], "graphs": ["g"], "sweeps": [{"name": "n"}])" + scales + "}", "s.json",
+                 {.scale = "tini"});
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ExitCode::Usage);
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(errorWith(R"(, "scales": {"tiny": {}, "huge": {}})"),
+              testing::AllOf(HasSubstr("`tini`"), HasSubstr("its scales are tiny, huge")));
+  EXPECT_THAT(errorWith(""), HasSubstr("it has no scales"));
+}
+
+TEST(BenchSuite, EachSweepHasItsTableOfThePaper) {
+  const Suite suite = parseSuite(R"({"scenes": ["a"], "graphs": ["g"], "paper": "table1", "page": "paper",
+    "sweeps": [{"name": "n"}, {"name": "m", "paper": "table2"}]})",
+                                 "s.json");
+  EXPECT_EQ(suite.papers, (std::map<std::string, std::string>{{"n", "table1"}, {"m", "table2"}}));
+  EXPECT_EQ(suite.page, "paper");
+}
+
 TEST(BenchSuite, MatchKnowsWhatTheOtherGraphIsRunWith) {
   const Suite suite = parseSuite(
       R"({"scenes": ["a"], "set": {"kernel": "disc", "map_size": [16, 32]}, "sweeps": [{"name": "n", "graphs": [
@@ -159,6 +218,17 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"LabelTwice", "{\"graphs\": [\"g\", \"x/g.json\"], \"sweeps\": []}",
                 "s.json:1:18: error: the label `g` occurs twice in this list "
                 "(at graphs[1])"},
+        Mistake{"UnknownKeyOfAScale", "{\"scales\": {\"small\":\n{\"seed\": 1}}, \"sweeps\": []}",
+                "s.json:2:2: error: unknown key `seed` (at scales.small.seed)\n  -> did you mean `seeds`?"},
+        Mistake{"BadSizeOfAScale", "{\"scales\": {\"small\": {\"size\": \"4\"}}, \"sweeps\": []}",
+                "s.json:1:32: error: expected a size like \"256x256\", found the text \"4\" (at "
+                "scales.small.size)"},
+        Mistake{"ScaleOfOneFrame", "{\"scales\": {\"small\": {\"max_frames\": 1}}, \"sweeps\": []}",
+                "expected a whole number from 2 to 1000000, found the number 1"},
+        Mistake{"ScaleIsANumber", "{\"scales\": {\"small\": 4}, \"sweeps\": []}",
+                "s.json:1:22: error: expected an object, found the number 4 (at scales.small)"},
+        Mistake{"PageElsewhere", "{\"page\": \"../paper\", \"sweeps\": []}",
+                "s.json:1:10: error: expected the name of a script in benchmarks/, without .py, found"},
         Mistake{"OneFrameHasNoChange",
                 "{\"scenes\": [\"a\"], \"graphs\": [\"g\"], \"sweeps\": "
                 "[{\"name\": \"n\", \"measures\": [\"temporal\"]}]}",
@@ -194,11 +264,29 @@ TEST(BenchSuite, TheStockSuitesAreGood) {
   const std::filesystem::path folder = std::filesystem::path(FOVEA_SOURCE_DIR) / "benchmarks/suites";
   size_t suites = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    EXPECT_GT(loadSuite(entry.path().stem().string(), {folder}).jobs.size(), 0u) << entry.path();
+    const std::string name = entry.path().stem().string();
+    const Suite suite = loadSuite(name, {folder});
+    EXPECT_GT(suite.jobs.size(), 0u) << name;
+    for (const std::string& scale : suite.scales)
+      EXPECT_GT(loadSuite(name, {folder}, {.scale = scale}).jobs.size(), 0u) << name << ", " << scale;
     ++suites;
   }
-  EXPECT_GE(suites, 12u);
-  EXPECT_THROW(loadSuite("tabel1", {folder}), Error);
+  EXPECT_GE(suites, 9u);
+  EXPECT_THROW(loadSuite("paepr", {folder}), Error);
+}
+
+// Whatever the scale, each table and figure has its sweeps, and the methods that it compares are measured.
+TEST(BenchSuite, EveryScaleOfThePaperHasEveryTableAndFigure) {
+  const std::filesystem::path folder = std::filesystem::path(FOVEA_SOURCE_DIR) / "benchmarks/suites";
+  const auto measured = [](const Suite& suite) {
+    std::set<std::string> found;
+    for (const Job& job : suite.jobs) found.insert(job.sweep + " " + job.label);
+    return found;
+  };
+  const std::set<std::string> all = measured(loadSuite("paper", {folder}));
+  EXPECT_GE(all.size(), 20u);
+  for (const char* scale : {"small", "middle", "full"})
+    EXPECT_EQ(measured(loadSuite("paper", {folder}, {.scale = scale})), all) << scale;
 }
 
 TEST(BenchSuite, Globs) {
