@@ -1,0 +1,60 @@
+"""Curves and bars of the page."""
+from report import plt
+
+from .panels import write
+from .results import mean_of
+
+FACTOR = 1e3  # errors are shown times 1000, as in the paper
+
+
+def curves(results, file, sweeps, measures, scenes):
+    """A row for each measure and scene, a column for each of `sweeps`, (sweep, axis, label); a curve a graph."""
+    rows = [(measure, scene) for measure in measures for scene in scenes]
+    if not rows or not any(results.select(s) for s, _, _ in sweeps):
+        return False
+    figure, places = plt.subplots(len(rows), len(sweeps), squeeze=False,
+                                  figsize=(2.7 * len(sweeps), 1.9 * len(rows) + 0.2))
+    for (measure, scene), line in zip(rows, places):
+        for place, (sweep, axis, label) in zip(line, sweeps):
+            for graph in dict.fromkeys(r["job"]["label"] for r in results.select(sweep, scene)):
+                curve(results, place, (sweep, scene, graph, measure[0]), axis)
+            place.tick_params(labelsize=6)
+            place.set_xlabel(label, fontsize=7)
+            place.set_ylim(bottom=min(0, place.get_ylim()[0]))
+            place.set_title(scene, fontsize=7)
+        line[0].set_ylabel(f"{measure[1]} × 1000", fontsize=7)
+        if line[0].lines:
+            line[0].legend(fontsize=6)
+    figure.tight_layout()
+    write(file)
+    return True
+
+
+def curve(results, place, where, axis):
+    points = []
+    for value in results.values(where[0], axis):
+        seeds = results.seeds(*where, **{axis: value})
+        if seeds:
+            points.append((float(value), *mean_of(FACTOR * v for v in seeds.values())))
+    if points:
+        x, y, half = zip(*points)
+        bars = [h if h == h else 0 for h in half]
+        place.errorbar(x, y, yerr=bars if any(bars) else None, marker="o", markersize=3, linewidth=1, capsize=2,
+                       label=where[2])
+
+
+def stacked(file, bars, steps, unit):
+    """bars: label -> {step: amount}."""
+    figure, place = plt.subplots(figsize=(1.6 + 0.62 * len(bars), 3.4))
+    bottom = [0.0] * len(bars)
+    for i, step in enumerate(steps):
+        heights = [amounts.get(step, 0) for amounts in bars.values()]
+        place.bar(range(len(bars)), heights, 0.7, bottom=bottom, label=step, color=plt.get_cmap("tab10").colors[i % 10])
+        bottom = [b + h for b, h in zip(bottom, heights)]
+    place.set_xticks(range(len(bars)))
+    place.set_xticklabels(bars, fontsize=6, rotation=60, ha="right")
+    place.tick_params(axis="y", labelsize=6)
+    place.set_ylabel(unit, fontsize=7)
+    place.legend(fontsize=6)
+    figure.tight_layout()
+    write(file)

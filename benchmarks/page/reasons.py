@@ -1,0 +1,36 @@
+"""Measured reasons why an error is not lower: how much of it is bias, and how much is that of the direct light."""
+from .fit import fitted
+from .text import short
+
+COUNTS = "fig5_fig9_vpl_count"
+STILLS = "table1_stills"
+FIT_TITLE = "Figure 5: error over the size of maps, the number of VPLs and the size of the fovea"  # has the fits
+MUCH = 0.5  # a reason is given from this share on
+
+
+def fit_of(results, scene, graph, measure):
+    """E(N) = b + v / N over the numbers of VPLs, or None."""
+    points = []
+    for count in results.values(COUNTS, "vpl_count"):
+        error = results.mean(COUNTS, scene, graph, measure, vpl_count=count)
+        if error is not None:
+            points.append((float(count), error))
+    return fitted(points)
+
+
+def of_error(results):
+    """A function of a scene that says why the foveal error of `ours` is not lower there, or ""."""
+    def reason(scene):
+        parts = []
+        fit = fit_of(results, scene, "ours", "error.fovea.mse")
+        if fit and fit.share(1000) >= MUCH:
+            parts.append(f"{fit.share(1000):.0%} of the error of `ours` with 1000 VPLs is bias, "
+                         "which more VPLs do not reduce")
+        error, floor = (results.mean(STILLS, scene, "ours", f"error.fovea.{m}") for m in ("mse", "direct_floor"))
+        if error and floor and floor / error >= MUCH:
+            parts.append(f"direct light alone has {floor / error:.0%} of the error")
+        light = results.mean(STILLS, scene, "ours", "error.indirect_light")
+        if light is not None and abs(light - 1) > 0.1:
+            parts.append(f"`ours` has {short(light)} of the indirect light of the reference")
+        return f"In `{scene}`, {', and '.join(parts)}." if parts else ""
+    return reason

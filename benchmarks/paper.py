@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""One page from the results of `fovea bench paper`: every table and figure of the paper, and whether its claims hold.
+
+Usage: benchmarks/paper.py DIR    (fovea bench calls it; DIR holds report.json, results and pictures)
+Writes DIR/paper/README.md and the pictures beside it. Exit code 9 without matplotlib.
+"""
+import pathlib
+import shutil
+import sys
+
+from report import Report
+from page import figures, table_entries, times
+from page.results import Results
+from page.text import anchor, one_or_many
+from page.verdict import FAILS, HOLDS, MISSING, UNDECIDED
+
+HEADINGS = {FAILS: "do not hold here", UNDECIDED: "are undecided, as seeds differ too much",
+            MISSING: "are not measured yet", HOLDS: "hold here"}
+
+
+def entries(results, folder):
+    """Every table and figure of the paper in its order; Figure 2 is a diagram. Prose comes last."""
+    return [table_entries.table1(results), table_entries.table2(results),
+            *(make(results, folder) for make in (figures.figure1, figures.figure3, figures.figure4, figures.figure5,
+                                                 figures.figure6, figures.figure7, figures.figure8, figures.figure9,
+                                                 times.figure10)),
+            times.moving_plane(results)]
+
+
+def summary(found):
+    """The claims by verdict, those that do not hold first."""
+    lines = []
+    for verdict, heading in HEADINGS.items():
+        claims = [(entry, claim) for entry in found for claim in entry.claims if claim.verdict == verdict]
+        lines.append(f"**{len(claims)} {heading if len(claims) != 1 else singular(heading)}**" + (":" if claims else "."))
+        lines.append("\n".join(f"- [{entry.title.split(':')[0]}]({anchor(entry.title)}): {claim.text}"
+                               for entry, claim in claims))
+    return [line for line in lines if line]
+
+
+def singular(heading):
+    return heading.replace("do not hold", "does not hold").replace("are ", "is ").replace("hold here", "holds here") \
+        if not heading.startswith("do not") else heading.replace("do not", "does not")
+
+
+def origin(results):
+    """What the numbers come from: scale, sizes, samples, seeds, device and commit, with a warning if commits differ."""
+    jobs = [r["job"] for r in results.all]
+    sizes = sorted({tuple(j["size"]) for j in jobs})
+    samples = sorted({j["reference"]["spp"] for j in jobs if "reference" in j})
+    scale = results.head.get("scale")
+    lines = [
+        f"Scale: {f'`{scale}`' if scale else 'the suite as it is'}; pictures of "
+        f"{', '.join(f'{w}x{h}' for w, h in sizes)} pixels, references of {', '.join(map(str, samples)) or 'no'} samples "
+        f"a pixel, {one_or_many(len({j['seed'] for j in jobs}), 'seed')}. "
+        f"{len(results.all)} of {results.head['jobs']} jobs are measured. "
+        "A ± is half the 95% interval over seeds; where there is one seed, verdicts rest on it alone.",
+        f"Device: {'; '.join(results.devices())}.",
+        f"Commit: {', '.join(results.commits())}.",
+        f"Command: `{results.head.get('command', '')}`."]
+    warnings = []
+    if len(results.commits()) > 1:
+        warnings.append(f"> **Warning: these results come from {len(results.commits())} commits.** Measure them again "
+                        "with one build before relying on a comparison.")
+    for scene, why in results.head.get("missing_scenes", {}).items():
+        warnings.append(f"> **The scene `{scene}` is left out:** {why}")
+    return [*warnings, "\n".join(f"- {line}" for line in lines)]
+
+
+def write(folder):
+    report = Report(folder)
+    results = Results(report.head, report.results, folder)
+    page = folder / "paper"
+    shutil.rmtree(page, ignore_errors=True)
+    page.mkdir(parents=True)
+    found = entries(results, page)
+    lines = ["# Every table and figure of the paper",
+             "*Foveated Instant Radiosity* (ISMAR 2020), measured with this implementation. Of the claims below,",
+             *summary(found), *origin(results)]
+    for entry in found:
+        lines += [f"## {entry.title}", *(b for b in entry.blocks if b),
+                  "\n".join(f"- {claim.sentence}" for claim in entry.claims)]
+    partial = page / "README.md.partial"
+    partial.write_text("\n\n".join(lines) + "\n", encoding="utf-8")
+    partial.rename(page / "README.md")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    write(pathlib.Path(sys.argv[1]))
