@@ -5,17 +5,17 @@ Usage: benchmarks/paper.py DIR    (fovea bench calls it; DIR holds report.json, 
 Writes DIR/paper/README.md and the pictures beside it. Exit code 9 without matplotlib.
 """
 import pathlib
-import shutil
 import sys
 
-from report import Report
-from page import figures, table_entries, times
-from page.results import Results
-from page.text import anchor, one_or_many
-from page.verdict import FAILS, HOLDS, MISSING, UNDECIDED
+sys.dont_write_bytecode = True  # the modules lie in the source tree
+from report import Report  # noqa: E402
+from page import figures, table_entries, times  # noqa: E402
+from page.results import Results  # noqa: E402
+from page.text import anchor, one_or_many  # noqa: E402
+from page.verdict import FAILS, HOLDS, MISSING, UNDECIDED  # noqa: E402
 
-HEADINGS = {FAILS: "do not hold here", UNDECIDED: "are undecided, as seeds differ too much",
-            MISSING: "are not measured yet", HOLDS: "hold here"}
+HEADINGS = {FAILS: "Do not hold here", HOLDS: "Hold here", UNDECIDED: "Undecided, as seeds differ too much",
+            MISSING: "Not measured yet"}
 
 
 def entries(results, folder):
@@ -28,19 +28,19 @@ def entries(results, folder):
 
 
 def summary(found):
-    """The claims by verdict, those that do not hold first."""
-    lines = []
+    """How many claims have each verdict, and which; those that do not hold come first."""
+    claims = {verdict: [(entry, claim) for entry in found for claim in entry.claims if claim.verdict == verdict]
+              for verdict in HEADINGS}
+    count = {verdict: len(list_) for verdict, list_ in claims.items()}
+    lines = [f"Of {sum(count.values())} claims, **{count[FAILS]} do not hold here, {count[HOLDS]} hold**, "
+             f"{count[UNDECIDED]} are undecided and {count[MISSING]} not measured yet. They are those of the paper's "
+             "tables and text, and what its figures are there to show."]
     for verdict, heading in HEADINGS.items():
-        claims = [(entry, claim) for entry in found for claim in entry.claims if claim.verdict == verdict]
-        lines.append(f"**{len(claims)} {heading if len(claims) != 1 else singular(heading)}**" + (":" if claims else "."))
-        lines.append("\n".join(f"- [{entry.title.split(':')[0]}]({anchor(entry.title)}): {claim.text}"
-                               for entry, claim in claims))
-    return [line for line in lines if line]
-
-
-def singular(heading):
-    return heading.replace("do not hold", "does not hold").replace("are ", "is ").replace("hold here", "holds here") \
-        if not heading.startswith("do not") else heading.replace("do not", "does not")
+        if claims[verdict]:
+            lines.append(f"{heading} ({count[verdict]}):")
+            lines.append("\n".join(f"- [{entry.title.split(':')[0]}]({anchor(entry.title)}): {claim.text}"
+                                   for entry, claim in claims[verdict]))
+    return lines
 
 
 def origin(results):
@@ -51,8 +51,8 @@ def origin(results):
     scale = results.head.get("scale")
     lines = [
         f"Scale: {f'`{scale}`' if scale else 'the suite as it is'}; pictures of "
-        f"{', '.join(f'{w}x{h}' for w, h in sizes)} pixels, references of {', '.join(map(str, samples)) or 'no'} samples "
-        f"a pixel, {one_or_many(len({j['seed'] for j in jobs}), 'seed')}. "
+        f"{', '.join(f'{w}x{h}' for w, h in sizes)} pixels, references of {', '.join(map(str, samples)) or 'no'} "
+        f"samples a pixel, {one_or_many(len({j['seed'] for j in jobs}), 'seed')}. "
         f"{len(results.all)} of {results.head['jobs']} jobs are measured. "
         "A ± is half the 95% interval over seeds; where there is one seed, verdicts rest on it alone.",
         f"Device: {'; '.join(results.devices())}.",
@@ -71,11 +71,12 @@ def write(folder):
     report = Report(folder)
     results = Results(report.head, report.results, folder)
     page = folder / "paper"
-    shutil.rmtree(page, ignore_errors=True)
-    page.mkdir(parents=True)
+    page.mkdir(parents=True, exist_ok=True)
+    for picture in page.glob("figure*.png"):  # of results that may be gone
+        picture.unlink()
     found = entries(results, page)
     lines = ["# Every table and figure of the paper",
-             "*Foveated Instant Radiosity* (ISMAR 2020), measured with this implementation. Of the claims below,",
+             "*Foveated Instant Radiosity* (ISMAR 2020), measured with this implementation.",
              *summary(found), *origin(results)]
     for entry in found:
         lines += [f"## {entry.title}", *(b for b in entry.blocks if b),

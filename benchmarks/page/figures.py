@@ -4,11 +4,12 @@ import pathlib
 from . import reasons
 from .panels import first_seed, grid, read, with_reference
 from .plots import curves
-from .table_entries import METHODS, SEQUENCES, STILLS, outcomes
-from .text import beside, short, spread, table
-from .verdict import Entry, all_of, claim, is_less
+from .sweeps import (COSINE_SEQUENCES, COSINE_STILLS, COUNTS, MAPS, PARAMETERS, RADII, SEQUENCES, STILLS,
+                     UNCLAMPED)
+from .table_entries import METHODS, outcomes
+from .text import short, spread, table
+from .verdict import MISSING, Entry, all_of, claim, is_less
 
-MAPS, COUNTS, RADII = "fig5_fig9_map_size", reasons.COUNTS, "fig5_fig9_fovea_radius"
 AXES = ((MAPS, "map_size", "texels of a map's side"), (COUNTS, "vpl_count", "VPLs"),
         (RADII, "view.fovea_radius", "radius of the fovea, image widths"))
 MSE, FLIP, EXCESS = "error.fovea.mse", "error.fovea.flip", "temporal.fovea.excess"
@@ -33,8 +34,8 @@ def stills(results, entry, folder, name, scenes, found_of, errors=True):
             continue
         file = folder / f"{name}-{stem(scene)}.png"
         grid(file, *panels)
-        rows = "circle: the fovea; below: the square, enlarged" + ("; last: error, its noise included" if errors else "")
-        show(entry, file, f"{scene}; {rows}")
+        last = "; last: error, with the noise of the reference" if errors else ""
+        show(entry, file, f"{scene}; circle: the fovea; below: the square, enlarged{last}")
         shown = True
     if not shown:
         entry.missing("Pictures")
@@ -52,8 +53,8 @@ def figure1(results, folder):
     mine, other = (results.seeds(STILLS, scene, g, MSE) for g in ("ours", "ir_1000"))
     known = {scene: is_less(mine, other)} if set(mine) & set(other) else {}
     detail = f"MSE {spread(mine, 1e3)} and {spread(other, 1e3)}, times 1000" if known else ""
-    entry.claims.append(claim("In the fovea of this picture, Ours is nearer to the reference than IR_1000", known, detail,
-                              reasons.of_error(results)))
+    entry.claims.append(claim("In the fovea of this picture, Ours is nearer to the reference than IR_1000", known,
+                              detail, reasons.of_error(results)))
     return entry
 
 
@@ -68,7 +69,8 @@ def figure3(results, folder):
 
 
 def methods_of(results, measure, heading):
-    rows = [[f"`{s}`", *(spread(results.seeds(STILLS, s, g, measure)) for g in METHODS)] for s in results.scenes(STILLS)]
+    rows = [[f"`{s}`", *(spread(results.seeds(STILLS, s, g, measure)) for g in METHODS)]
+            for s in results.scenes(STILLS)]
     return f"{heading}\n\n" + table(["scene", *(f"`{g}`" for g in METHODS)], rows) if rows else ""
 
 
@@ -90,13 +92,13 @@ def figure4(results, folder):
         entry.missing("Pictures")
     entry.claims.append(claim(
         "In the fovea, Ours flickers less (excess) than IR_1000 and IR_v",
-        {s: o for s, o in outcomes(results, SEQUENCES, EXCESS, ("ir_1000", "ir_v")).items()}))
+        outcomes(results, SEQUENCES, EXCESS, ("ir_1000", "ir_v"))))
     return entry
 
 
 def figure6(results, folder):
     entry = Entry("Figure 6: pictures over the number of VPLs and the size of the fovea")
-    sweep = "fig6_pictures"
+    sweep = PARAMETERS
     counts, radii = (results.values(sweep, axis) for axis in ("vpl_count", "view.fovea_radius"))
     known = {}
     for scene in results.scenes(sweep):
@@ -129,13 +131,13 @@ def panel_of(results, result, kind):
 
 def figure7(results, folder):
     entry = Entry("Figure 7: the linear and the cosine rule of reuse")
-    pairs = (("error.fovea.mse", STILLS, "fig7_stills"), (EXCESS, SEQUENCES, "fig7_sequences"))
+    pairs = (("error.fovea.mse", STILLS, COSINE_STILLS), (EXCESS, SEQUENCES, COSINE_SEQUENCES))
     found = lambda s: {"ours (linear)": first_seed(results, STILLS, s, "ours"),
-                       "ours_cosine": first_seed(results, "fig7_stills", s, "ours_cosine")}
-    stills(results, entry, folder, "figure7", results.scenes("fig7_stills"), found)
+                       "ours_cosine": first_seed(results, COSINE_STILLS, s, "ours_cosine")}
+    stills(results, entry, folder, "figure7", results.scenes(COSINE_STILLS), found)
     rows = [[f"`{s}`", *(spread(results.seeds(sweep, s, g, m), 1e3) for m, linear, cosine in pairs
                          for sweep, g in ((linear, "ours"), (cosine, "ours_cosine")))]
-            for s in results.scenes("fig7_stills", "fig7_sequences")]
+            for s in results.scenes(COSINE_STILLS, COSINE_SEQUENCES)]
     entry.add(table(["scene", "MSE in the fovea, linear", "cosine", "excess in the fovea, linear", "cosine"], rows))
     for (measure, linear, cosine), what in zip(pairs, ("has less error", "flickers less (excess)")):
         known = compared(results, measure, (linear, "ours"), (cosine, "ours_cosine"))
@@ -155,7 +157,7 @@ def compared(results, measure, mine, other):
 
 def figure8(results, folder):
     entry = Entry("Figure 8: with and without the clamp of short distances")
-    sweep = "fig8_stills"
+    sweep = UNCLAMPED
     graphs = (("ours", STILLS), ("ours_unclamped", sweep), ("ir_1000", STILLS), ("ir_1000_unclamped", sweep))
     found = lambda s: {g: first_seed(results, where, s, g) for g, where in graphs}
     stills(results, entry, folder, "figure8", results.scenes(sweep), found)
@@ -229,9 +231,9 @@ def fits(results):
                 cells += [short(1e3 * fit.bias), short(fit.variance), f"{fit.share(1000):.0%}"] if fit else ["-"] * 3
             rows.append([f"`{scene}`", f"`{graph}`", *cells])
     if not rows:
-        return f"**Fit of the bias: {claim('', {}).verdict}.**"
-    return ("E(N) = b + v / N, fitted to the errors in the fovea with every number N of VPLs by least squares of relative "
-            "deviations. The bias b is what more VPLs do not reduce; b and v are times 1000 and 1.\n\n" +
+        return f"**Fit of the bias: {MISSING}.**"
+    return ("E(N) = b + v / N, fitted to the errors in the fovea with every number N of VPLs by least squares of "
+            "relative deviations. The bias b is what more VPLs do not reduce; b is given times 1000.\n\n" +
             table(["scene", "graph", "b", "v", "bias of E(1000)", "b, indirect light", "v", "bias of E(1000)"], rows))
 
 

@@ -7,9 +7,12 @@ from PIL import Image
 
 from report import plt
 
-COLOURS = 128  # of a file; enough to see what there is to see, at a third of the bytes
+from .verdict import MISSING
+
+COLOURS = 256  # of a file; enough to see what there is to see, at a third of the bytes
 PANEL = 1.75  # inches
 DPI = 110
+NOTHING = ()  # in place of pixels: an empty panel
 
 
 def name_of(job):
@@ -38,7 +41,8 @@ def middle(pixels, disc):
     """The square of half the fovea's width around its centre, and its left, top and side."""
     x, y, radius = disc
     side = max(8, min(int(radius), *pixels.shape[:2]))
-    left, top = (int(max(0, min(edge - side, at - side / 2))) for edge, at in ((pixels.shape[1], x), (pixels.shape[0], y)))
+    left, top = (int(max(0, min(edge - side, at - side / 2)))
+                 for edge, at in ((pixels.shape[1], x), (pixels.shape[0], y)))
     return pixels[top:top + side, left:left + side], (left, top, side)
 
 
@@ -54,12 +58,15 @@ def write(file):
 def panel(place, pixels, disc=None, box=None):
     place.set_xticks([])
     place.set_yticks([])
+    if pixels is NOTHING:
+        place.set_frame_on(False)
+        return
     for edge in place.spines.values():
         edge.set_linewidth(0.5)
     if pixels is None:
-        place.text(0.5, 0.5, "not measured yet", ha="center", va="center", fontsize=7, transform=place.transAxes)
+        place.text(0.5, 0.5, MISSING, ha="center", va="center", fontsize=7, transform=place.transAxes)
         return
-    place.imshow(pixels, interpolation="nearest")
+    place.imshow(pixels)
     if disc:
         place.add_patch(plt.Circle(disc[:2], disc[2], fill=False, color="white", linewidth=0.8))
     if box:
@@ -97,5 +104,5 @@ def with_reference(results, found, errors=True):
             ("enlarged", [(None if p is None else middle(p, disc)[0],) for p in pictures])]
     if errors:
         error = [read(results, r, "-error") if r else None for r in found.values()]
-        rows.append(("error", [(numpy.full_like(truth, 255),), *((p,) for p in error)]))
+        rows.append(("error", [(NOTHING,), *((p,) for p in error)]))
     return ["reference", *found], rows

@@ -1,8 +1,11 @@
 """Curves and bars of the page."""
+import math
+
 from report import plt
 
 from .panels import write
 from .results import mean_of
+from .verdict import MISSING
 
 FACTOR = 1e3  # errors are shown times 1000, as in the paper
 
@@ -20,11 +23,16 @@ def curves(results, file, sweeps, measures, scenes):
                 curve(results, place, (sweep, scene, graph, measure[0]), axis)
             place.tick_params(labelsize=6)
             place.set_xlabel(label, fontsize=7)
-            place.set_ylim(bottom=min(0, place.get_ylim()[0]))
+            low, high = place.get_ylim()
+            place.set_ylim(min(0, low), high + 0.05 * (high - min(0, low)))
+            if not place.lines:
+                place.set_xticks([])
+                place.set_yticks([])
+                place.text(0.5, 0.5, MISSING, ha="center", fontsize=7, transform=place.transAxes)
             place.set_title(scene, fontsize=7)
         line[0].set_ylabel(f"{measure[1]} × 1000", fontsize=7)
-        if line[0].lines:
-            line[0].legend(fontsize=6)
+    for place in [p for p in places.flat if p.lines][:1]:
+        place.legend(fontsize=6, bbox_to_anchor=(1, 1), loc="upper left")
     figure.tight_layout()
     write(file)
     return True
@@ -38,14 +46,14 @@ def curve(results, place, where, axis):
             points.append((float(value), *mean_of(FACTOR * v for v in seeds.values())))
     if points:
         x, y, half = zip(*points)
-        bars = [h if h == h else 0 for h in half]
+        bars = [h if math.isfinite(h) else 0 for h in half]
         place.errorbar(x, y, yerr=bars if any(bars) else None, marker="o", markersize=3, linewidth=1, capsize=2,
                        label=where[2])
 
 
 def stacked(file, bars, steps, unit):
     """bars: label -> {step: amount}."""
-    figure, place = plt.subplots(figsize=(1.6 + 0.62 * len(bars), 3.4))
+    figure, place = plt.subplots(figsize=(2.9 + 0.34 * len(bars), 3.6))
     bottom = [0.0] * len(bars)
     for i, step in enumerate(steps):
         heights = [amounts.get(step, 0) for amounts in bars.values()]
@@ -55,6 +63,6 @@ def stacked(file, bars, steps, unit):
     place.set_xticklabels(bars, fontsize=6, rotation=60, ha="right")
     place.tick_params(axis="y", labelsize=6)
     place.set_ylabel(unit, fontsize=7)
-    place.legend(fontsize=6)
+    place.legend(fontsize=6, bbox_to_anchor=(1, 1), loc="upper left")
     figure.tight_layout()
     write(file)

@@ -1,9 +1,9 @@
 """Measured reasons why an error is not lower: how much of it is bias, and how much is that of the direct light."""
 from .fit import fitted
+from .steps import STEPS, mean_steps
+from .sweeps import COUNTS, STILLS, TIMES
 from .text import short
 
-COUNTS = "fig5_fig9_vpl_count"
-STILLS = "table1_stills"
 FIT_TITLE = "Figure 5: error over the size of maps, the number of VPLs and the size of the fovea"  # has the fits
 MUCH = 0.5  # a reason is given from this share on
 
@@ -34,3 +34,22 @@ def of_error(results):
             parts.append(f"`ours` has {short(light)} of the indirect light of the reference")
         return f"In `{scene}`, {', and '.join(parts)}." if parts else ""
     return reason
+
+
+def of_time(results, scene):
+    """Which steps a frame of `ours` spends most of its time in."""
+    steps = mean_steps(results, TIMES, scene, "ours")
+    whole = sum(steps.values())
+    if not whole:
+        return ""
+    most = sorted(steps, key=steps.get, reverse=True)[:2]
+    return f"In `{scene}`, a frame of `ours` spends " + " and ".join(
+        f"{steps[step] / whole:.0%} of its time in {step}" for step in most) + "."
+
+
+def of_generation(results, scene):
+    """How much of the time to generate VPLs are voxels and their light."""
+    steps = mean_steps(results, TIMES, scene, "ours")
+    voxels, others = steps.get("voxels and their light", 0), (steps.get(s, 0) for s in list(STEPS)[1:3])
+    whole = voxels + sum(others)
+    return f"In `{scene}`, {voxels / whole:.0%} of that time are voxels and their light." if whole else ""

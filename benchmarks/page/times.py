@@ -3,31 +3,14 @@ import pathlib
 
 from .motion import pixels_per_frame
 from .plots import stacked
-from .results import mean_of, pass_times
-from .table_entries import TIMES
+from .reasons import of_generation
+from .steps import SCENE, STEPS, mean_steps, steps_of
+from .sweeps import ALL_MAPS, SPEED, TIMES
 from .text import short, spread, table
 from .verdict import Entry, claim, is_at_least, is_less
 
-ALL_MAPS, SPEED = "fig10_all_maps", "speed"
-# Steps of a frame and the passes that belong to them; what is in none of them is drawing the scene.
-STEPS = {
-    "voxels and their light": ("voxelize", "light-inject", "mipmap"),
-    "generation of VPLs": ("emit", "candidates", "radiance", "vpl-origins", "vpl-intensity"),
-    "management of VPLs": ("weight-map", "vpl-motion", "importance", "manage"),
-    "shadow maps of VPLs": ("shadow-atlas",),
-    "shading by VPLs": ("deferred", "near-field", "near-field-mean"),
-}
-SCENE = "scene and direct light"
 PAPER_WIDTH, PAPER_RATE, PAPER_SPEED, PAPER_LIMIT = 1024, 42, (100, 150), 0.06e-3
 PAPER_SAVING, PAPER_SLOWER = 0.8, (2, 3)
-
-
-def steps_of(result):
-    """Milliseconds of each step of a frame."""
-    found = dict.fromkeys([*STEPS, SCENE], 0.0)
-    for name, ms in pass_times(result).items():
-        found[next((step for step, names in STEPS.items() if name in names), SCENE)] += ms
-    return found
 
 
 def seeds_of(results, sweep, scene, graph, amount):
@@ -40,16 +23,16 @@ def figure10(results, folder):
     bars, rows = {}, []
     for scene in results.scenes(TIMES, ALL_MAPS):
         for sweep, graph in ((TIMES, "ir_1000"), (TIMES, "ours"), (ALL_MAPS, "ours_all_maps")):
-            found = [steps_of(r) for r in results.select(sweep, scene, graph)]
-            if found:
-                mean = {step: mean_of(f[step] for f in found)[0] for step in found[0]}
+            mean = mean_steps(results, sweep, scene, graph)
+            if mean:
                 bars[f"{pathlib.Path(scene).stem} {graph}"] = mean
-                rows.append([f"`{scene}`", f"`{graph}`", *(short(ms) for ms in mean.values()), short(sum(mean.values()))])
+                rows.append([f"`{scene}`", f"`{graph}`", *map(short, [*mean.values(), sum(mean.values())])])
     if bars:
         file = folder / "figure10.png"
         stacked(file, bars, [*STEPS, SCENE], "milliseconds a frame, by step")
         entry.add(f"![Milliseconds of the steps of a frame]({file.name})")
-        entry.add("Milliseconds, medians over frames, means over seeds. `ours_all_maps` draws every map in every frame.")
+        entry.add("Milliseconds, medians over frames and means over seeds. `ours_all_maps` draws every map in every "
+                  "frame.")
         entry.add(table(["scene", "graph", *STEPS, SCENE, "sum"], rows))
     else:
         entry.missing("Times of steps")
@@ -68,7 +51,7 @@ def generation(results):
             known[scene] = None if None in (at_most, at_least) else at_most and not at_least
             detail.append(f"`{scene}` {spread(slower)}")
     return claim("Generating VPLs, with voxels and management, takes 2 to 3 times as long as for IR_1000", known,
-                 ", ".join(detail))
+                 ", ".join(detail), lambda s: of_generation(results, s))
 
 
 def saving(results):
@@ -120,23 +103,24 @@ def moving_plane(results):
                 inside.append(f"at {short(speed)} pixels a second MSE' is {spread(mine, 1e3)}, times 1000"
                               + (f", and that of the reference {short(1e3 * floor)}" if floor is not None else ""))
     if rows:
-        entry.add("Changes in the fovea from frame to frame, times 1000, over the speed of the plane on the screen. The "
-                  "sequence is rendered with several frame rates: the lower the rate, the further everything moves from "
-                  "one frame to the next. The speed is that at the paper's 42 frames a second and 1024 pixels; - where "
-                  "the scene has no file that tells it.")
+        entry.add("Changes in the fovea from frame to frame, times 1000, over the speed of the plane on the screen. "
+                  "The sequence is rendered with several frame rates: the lower the rate, the further everything moves "
+                  "from one frame to the next. The speed is that at the paper's 42 frames a second and 1024 pixels; "
+                  "- where no scene file tells it.")
         entry.add(table(["scene", "frames a second", "speed", "MSE' of `ours`", "of `ir_1000`", "of the reference",
                          "excess of `ours`", "of `ir_1000`"], rows))
     else:
         entry.missing("Sequences over speed")
-    entry.claims.append(claim("In the fovea, MSE' stays below 0.06 / 1000 for a plane that crosses Sponza at 100 to 150 "
-                              "pixels a second", known, "; ".join(inside), lambda s: camera_moves(results, s)))
+    entry.claims.append(claim("In the fovea, MSE' stays below 0.06 / 1000 for a plane that crosses Sponza at 100 to "
+                              "150 pixels a second", known, "; ".join(inside), lambda s: camera_moves(results, s)))
     return entry
 
 
 def camera_moves(results, scene):
     """Why MSE' cannot be as low: the reference itself changes more."""
-    rates = [r for r in results.select(SPEED, scene, "ours") if (s := speed_of(r)) and PAPER_SPEED[0] <= s <= PAPER_SPEED[1]]
-    floors = [r["temporal"]["fovea"].get("reference_mse_prime") for r in rates]
+    like_the_paper = [r for r in results.select(SPEED, scene, "ours")
+                      if PAPER_SPEED[0] <= (speed_of(r) or 0) <= PAPER_SPEED[1]]
+    floors = [r["temporal"]["fovea"].get("reference_mse_prime") for r in like_the_paper]
     if floors and all(f is not None and f > PAPER_LIMIT for f in floors):
         return (f"In `{scene}` the reference itself changes more than that, since the camera and the gaze move, "
                 "so no method can hold it.")
