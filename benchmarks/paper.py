@@ -2,7 +2,7 @@
 """One page from the results of `fovea bench paper`: every table and figure of the paper, and whether its claims hold.
 
 Usage: benchmarks/paper.py DIR    (fovea bench calls it; DIR holds report.json, results and pictures)
-Writes DIR/paper/README.md and the pictures beside it. Exit code 9 without matplotlib.
+Writes the folder DIR/paper: the page as Markdown and its pictures. Exit code 9 without matplotlib.
 """
 import pathlib
 import sys

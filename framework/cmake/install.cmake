@@ -11,9 +11,11 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/samples/scenes DESTINATION ${CMAKE_INSTA
   FILES_MATCHING PATTERN "*.json" PATTERN "*.csv" PATTERN "*.md")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/passes DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea
   FILES_MATCHING PATTERN "*.pass.json" PATTERN "*.comp" PATTERN "*.frag" PATTERN "*.vert" PATTERN "*.glsl" PATTERN "records.h")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/benchmarks/suites DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks)
-install(FILES ${PROJECT_SOURCE_DIR}/benchmarks/paper.json ${PROJECT_SOURCE_DIR}/benchmarks/report.py
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/benchmarks/suites ${PROJECT_SOURCE_DIR}/benchmarks/page
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks
+  FILES_MATCHING PATTERN "*.json" PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/benchmarks/paper.json ${PROJECT_SOURCE_DIR}/benchmarks/paper.py
+  ${PROJECT_SOURCE_DIR}/benchmarks/report.py DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(FOVEA_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/fovea)
