@@ -92,7 +92,7 @@ def figure4(results, folder):
         entry.missing("Pictures")
     entry.claims.append(claim(
         "In the fovea, Ours flickers less (excess) than IR_1000 and IR_v",
-        outcomes(results, SEQUENCES, EXCESS, ("ir_1000", "ir_v"))))
+        outcomes(results, SEQUENCES, EXCESS, ("ir_1000", "ir_v")), reason=lambda s: reasons.of_flicker(results, s)))
     return entry
 
 
@@ -207,7 +207,8 @@ def over_parameters(results, folder, name, entry, measures):
 
 def figure5(results, folder):
     entry = Entry(reasons.FIT_TITLE)
-    over_parameters(results, folder, "figure5", entry, [(MSE, "MSE in the fovea")])
+    over_parameters(results, folder, "figure5", entry, [(MSE, "MSE in the fovea × 1000", 1e3),
+                                                        ("time.wall_ms", "milliseconds a frame", 1)])
     entry.add(fits(results))
     why = reasons.of_error(results)
     entry.claims += [
@@ -239,8 +240,8 @@ def fits(results):
 
 def figure9(results, folder):
     entry = Entry("Figure 9: flicker over the size of maps, the number of VPLs and the size of the fovea")
-    over_parameters(results, folder, "figure9", entry, [("temporal.fovea.mse_prime", "MSE' in the fovea"),
-                                                        (EXCESS, "excess in the fovea")])
+    over_parameters(results, folder, "figure9", entry, [
+        ("temporal.fovea.mse_prime", "MSE' in the fovea × 1000", 1e3), (EXCESS, "excess in the fovea × 1000", 1e3)])
     rows = [[f"`{s}`", *(spread(results.seeds(COUNTS, s, "ours", EXCESS, vpl_count=c), 1e3)
                          for c in results.values(COUNTS, "vpl_count"))] for s in results.scenes(COUNTS)]
     if rows:

@@ -7,11 +7,12 @@ from .panels import write
 from .results import mean_of
 from .verdict import MISSING
 
-FACTOR = 1e3  # errors are shown times 1000, as in the paper
-
 
 def curves(results, file, sweeps, measures, scenes):
-    """A row for each measure and scene, a column for each of `sweeps`, (sweep, axis, label); a curve a graph."""
+    """A curve for each graph, in a row for each scene and measure, and a column for each sweep.
+
+    sweeps: (sweep, axis, label of the axis); measures: (name, label, factor). Returns whether there is anything.
+    """
     rows = [(measure, scene) for measure in measures for scene in scenes]
     if not rows or not any(results.select(s) for s, _, _ in sweeps):
         return False
@@ -20,7 +21,7 @@ def curves(results, file, sweeps, measures, scenes):
     for (measure, scene), line in zip(rows, places):
         for place, (sweep, axis, label) in zip(line, sweeps):
             for graph in dict.fromkeys(r["job"]["label"] for r in results.select(sweep, scene)):
-                curve(results, place, (sweep, scene, graph, measure[0]), axis)
+                curve(results, place, (sweep, scene, graph, measure[0]), axis, measure[2])
             place.tick_params(labelsize=6)
             place.set_xlabel(label, fontsize=7)
             low, high = place.get_ylim()
@@ -30,7 +31,7 @@ def curves(results, file, sweeps, measures, scenes):
                 place.set_yticks([])
                 place.text(0.5, 0.5, MISSING, ha="center", fontsize=7, transform=place.transAxes)
             place.set_title(scene, fontsize=7)
-        line[0].set_ylabel(f"{measure[1]} × 1000", fontsize=7)
+        line[0].set_ylabel(measure[1], fontsize=7)
     for place in [p for p in places.flat if p.lines][:1]:
         place.legend(fontsize=6, bbox_to_anchor=(1, 1), loc="upper left")
     figure.tight_layout()
@@ -38,12 +39,12 @@ def curves(results, file, sweeps, measures, scenes):
     return True
 
 
-def curve(results, place, where, axis):
+def curve(results, place, where, axis, factor):
     points = []
     for value in results.values(where[0], axis):
         seeds = results.seeds(*where, **{axis: value})
         if seeds:
-            points.append((float(value), *mean_of(FACTOR * v for v in seeds.values())))
+            points.append((float(value), *mean_of(factor * v for v in seeds.values())))
     if points:
         x, y, half = zip(*points)
         bars = [h if math.isfinite(h) else 0 for h in half]

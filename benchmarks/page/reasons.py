@@ -1,7 +1,7 @@
 """Measured reasons why an error is not lower: how much of it is bias, and how much is that of the direct light."""
 from .fit import fitted
 from .steps import STEPS, mean_steps
-from .sweeps import COUNTS, STILLS, TIMES
+from .sweeps import COUNTS, SEQUENCES, STILLS, TIMES
 from .text import short
 
 FIT_TITLE = "Figure 5: error over the size of maps, the number of VPLs and the size of the fovea"  # has the fits
@@ -34,6 +34,26 @@ def of_error(results):
             parts.append(f"`ours` has {short(light)} of the indirect light of the reference")
         return f"In `{scene}`, {', and '.join(parts)}." if parts else ""
     return reason
+
+
+def of_change(results, scene):
+    """How much of MSE' of `ours` is the motion of the scene, which every method has."""
+    change, motion = (results.mean(SEQUENCES, scene, "ours", f"temporal.fovea.{m}")
+                      for m in ("mse_prime", "reference_mse_prime"))
+    if not change or not motion or motion / change < MUCH:
+        return ""
+    return (f"In `{scene}`, MSE' of the reference, the motion of the scene alone, is {motion / change:.0%} of that of "
+            "`ours`.")
+
+
+def of_flicker(results, scene):
+    """Whether the noise of the reference is as large as the excess that was measured."""
+    excess, noise = (results.mean(SEQUENCES, scene, "ours", f"temporal.fovea.{m}")
+                     for m in ("excess", "excess_noise_floor"))
+    if not excess or not noise or noise / excess < MUCH:
+        return ""
+    return (f"In `{scene}`, the noise of the reference, which was subtracted, is {noise / excess:.0%} of the excess of "
+            "`ours`, so small differences say little.")
 
 
 def of_time(results, scene):

@@ -126,9 +126,10 @@ def add_sequences(results, entry):
             entry.add(methods_table(results, SEQUENCES, measure, published=False))
     entry.claims += [
         claim("In the fovea, Ours changes less from frame to frame (MSE') than IR_1000, IR_v and Ours_r",
-              outcomes(results, SEQUENCES, change, METHODS[:3])),
+              outcomes(results, SEQUENCES, change, METHODS[:3]), reason=lambda s: reasons.of_change(results, s)),
         claim("In the fovea, reuse in proportion to importance flickers less (excess) than at random (Ours_r)",
-              outcomes(results, SEQUENCES, "temporal.fovea.excess", ["ours_r"], rows=change)),
+              outcomes(results, SEQUENCES, "temporal.fovea.excess", ["ours_r"], rows=change),
+              reason=lambda s: reasons.of_flicker(results, s)),
     ]
 
 
@@ -182,7 +183,7 @@ def table2(results):
                 "card" if results.on_processor() else ", ".join(results.devices())
         entry.add(f"In brackets the paper's numbers, on an RTX 2080 Ti. Here: {where}. IR_eq is instant radiosity with "
                   "as many VPLs (N) as make its foveal error that of `ours`, by bisection from 250 to 8000; beside it "
-                  f"N by the [fit]({anchor(reasons.FIT_TITLE)})")
+                  f"N by the [fit]({anchor(reasons.FIT_TITLE)}) to the errors of Figure 5")
         entry.add(table(["scene", "paper's scene", "`ours`, ms", "over IR_1000", "N of IR_eq", "N by the fit",
                          "over IR_eq", "second eye / first", "new pixels"], [time_row(results, s) for s in scenes]))
     instant = {s: speed_ups(results, s, "ir_1000") for s in results.scenes(TIMES)}

@@ -449,6 +449,7 @@ Suite parseSuite(std::string_view text, const fs::path& file, const SuiteOverrid
   SuiteReader(messages, overrides).read(root, suite);
   messages.throwIfErrors();
   if (!overrides.scale.empty()) checkScale(overrides.scale, suite.scales, suite.name);
+  suite.scale = overrides.scale;
   std::vector<std::string> scenes;  // in order of first appearance
   for (const Job& job : suite.jobs)
     if (std::find(scenes.begin(), scenes.end(), job.scene) == scenes.end()) scenes.push_back(job.scene);

@@ -59,9 +59,9 @@ struct Suite {
   std::string page;       // script in benchmarks/ that writes a page of its own, or ""
   std::vector<Job> jobs;  // grouped by scene, so that each is loaded once
   std::vector<SpeedUp> speedUps;
-  std::map<std::string, std::string>
-      papers;                       // sweep -> table of benchmarks/paper.json to show beside its results
-  std::vector<std::string> scales;  // their names
+  std::map<std::string, std::string> papers;  // sweep -> table of benchmarks/paper.json to show beside it
+  std::vector<std::string> scales;            // their names
+  std::string scale;                          // the one that was chosen, or ""
   std::filesystem::path file;
 };
 

@@ -290,6 +290,7 @@ std::string writeTables(const BenchFolder& folder, const Suite& suite,
   for (const StoredResult& result : results) files.push_back(result.file.filename().string());
   const Json report = {{"suite", suite.name},
                        {"description", suite.description},
+                       {"scale", suite.scale},
                        {"command", command},
                        {"paper", !suite.papers.empty()},
                        {"paper_scenes", paper.value("scenes", Json::object())},

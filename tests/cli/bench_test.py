@@ -48,6 +48,9 @@ class Suites(CliTest):
         self.assertEqual(len(results), 4)
         for result in results.values():
             self.assertGreater(result["error"]["fovea"]["noise_floor"], 0)
+            self.assertGreater(result["error"]["whole"]["indirect_mse"], 0)
+            self.assertGreater(result["error"]["indirect_light"], 0)
+            self.assertIsInstance(result["temporal"]["fovea"]["indirect_excess"], float)
             self.assertIsInstance(result["temporal"]["periphery"]["excess"], float)
             self.assertGreater(result["time"]["frame"]["wall_ms"]["median"], 0)
             self.assertGreater(result["time"]["counters"]["deferred.shaded_pixels"], 0)
@@ -238,6 +241,26 @@ class Suites(CliTest):
         self.suite(measures=["time"], scenes=["cornellbox", "nowhere"], optional_scenes=["nowhere"])
         for name in ("nowhere", "mine/" + 300 * "x" + "/"):
             self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--scene", name, says=[name[:20], "cannot be used"])
+
+    def test_scales_and_page(self):
+        """A scale changes what is measured; results of two scales are not mixed; the suite's own script writes a page."""
+        self.suite(measures=["time"], page="paper", frames=3,
+                   scales={"tiny": {"size": "16x16", "max_frames": 2, "scenes": ["cornellbox"]}, "own": {}})
+        listed = self.succeeds("bench", "tiny.json", "--list", "--scale", "tiny").stdout.split()
+        self.assertEqual(listed, ["all-cornellbox-direct-s1", "all-cornellbox-ir_1000-s1"])
+        self.assertEqual(len(self.succeeds("bench", "tiny.json", "--list", "--scale", "own").stdout.split()), 4)
+        self.fails(USAGE, "bench", "tiny.json", "--list", "--scale", "tini", says=["`tini`", "tiny, own"])
+        out = self.succeeds("bench", "tiny.json", "-o", "out", "--scale", "tiny").stdout
+        self.assertIn("2 jobs to measure, 0 references", out)
+        self.assertIn("wrote out/paper/README", out)
+        for result in self.results().values():
+            self.assertEqual((result["job"]["size"], result["job"]["frames"]), ([16, 16], 2))
+        head = json.loads((self.folder / "out/report.json").read_text())
+        self.assertEqual((head["scale"], head["command"]), ("tiny", "fovea bench tiny.json -o DIR --scale tiny"))
+        page = (self.folder / "out/paper" / "README.md").read_text()
+        self.assertIn("Scale: `tiny`; pictures of 16x16 pixels", page)
+        self.assertIn("not measured yet", page)
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--report", says=["--scale"])
 
     def test_shared_references(self):
         """Several suites share one cache, which may be filled at any time; the jobs then make no references."""

@@ -39,7 +39,7 @@ def error(mse, light=1.0):
 
 def temporal(change, reference=0.0):
     region = {"mse_prime": change, "excess": change / 2, "indirect_excess": change / 4,
-              "reference_mse_prime": reference}
+              "reference_mse_prime": reference, "excess_noise_floor": reference}
     return {"fovea": region, "periphery": region}
 
 
@@ -277,6 +277,15 @@ class Page(ToolTest):
         self.result(TIMES, "room", "ours", time=time(10, {**passes, "light-inject": 30}))
         self.result(TIMES, "room", "ir_1000", time=time(40, {"emit": 1}))
         self.assertIn("of that time are voxels and their light", self.sentence(self.page(), "Generating VPLs"))
+
+    def test_flicker(self):
+        """A claim that fails is given the motion of the scene and the noise of the reference as reasons."""
+        for graph in METHODS[:3]:
+            self.result(SEQUENCES, "room", graph, temporal=temporal(1e-3, 8e-4))
+        self.result(SEQUENCES, "room", "ours", temporal=temporal(2e-3, 1.6e-3))
+        page = self.page()
+        self.assertIn("is 80% of that of `ours`", self.sentence(page, "In the fovea, Ours changes less"))
+        self.assertIn("is 160% of the excess of `ours`", self.sentence(page, "In the fovea, Ours flickers less"))
 
     def test_the_moving_plane(self):
         start = "In the fovea, MSE' stays below"
