@@ -32,11 +32,16 @@ def curves(results, file, sweeps, measures, scenes):
                 place.text(0.5, 0.5, MISSING, ha="center", fontsize=7, transform=place.transAxes)
             place.set_title(scene, fontsize=7)
         line[0].set_ylabel(measure[1], fontsize=7)
-    for place in [p for p in places.flat if p.lines][:1]:
-        place.legend(fontsize=6, bbox_to_anchor=(1, 1), loc="upper left")
-    figure.tight_layout()
+    names = max((place.get_legend_handles_labels() for place in places.flat), key=lambda found: len(found[0]))
+    figure.tight_layout(rect=(0, 0, 1, 1 - 0.2 / figure.get_figheight()))
+    figure.legend(*names, fontsize=7, ncol=3, loc="upper center")
     write(file)
     return True
+
+
+def colour(graph):
+    """The same in every plot."""
+    return f"C{('ours', 'ir_1000').index(graph) if graph in ('ours', 'ir_1000') else 2}"
 
 
 def curve(results, place, where, axis, factor):
@@ -49,7 +54,7 @@ def curve(results, place, where, axis, factor):
         x, y, half = zip(*points)
         bars = [h if math.isfinite(h) else 0 for h in half]
         place.errorbar(x, y, yerr=bars if any(bars) else None, marker="o", markersize=3, linewidth=1, capsize=2,
-                       label=where[2])
+                       label=where[2], color=colour(where[2]))
 
 
 def stacked(file, bars, steps, unit):

@@ -5,5 +5,4 @@ MAPS, COUNTS, RADII = "fig5_fig9_map_size", "fig5_fig9_vpl_count", "fig5_fig9_fo
 PARAMETERS = "fig6_pictures"
 COSINE_STILLS, COSINE_SEQUENCES = "fig7_stills", "fig7_sequences"
 UNCLAMPED = "fig8_stills"
-ALL_MAPS = "fig10_all_maps"
 SPEED = "speed"
