@@ -23,7 +23,7 @@ Scale readScale(const Value& value, const std::string& path, Diagnostics& messag
                      "expected a size like \"256x256\", found " + size->describe());
   }
   const auto count = [&](const char* key, int64_t min, int64_t max) {
-    return r.has(key) ? std::optional(uint32_t(r.integer(key, min, min, max))) : std::nullopt;
+    return r.find(key) ? std::optional(uint32_t(r.integer(key, min, min, max))) : std::nullopt;
   };
   scale.seeds = count("seeds", 1, 1000);
   scale.spp = count("spp", 2, 1'000'000);

@@ -221,7 +221,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"UnknownKeyOfAScale", "{\"scales\": {\"small\":\n{\"seed\": 1}}, \"sweeps\": []}",
                 "s.json:2:2: error: unknown key `seed` (at scales.small.seed)\n  -> did you mean `seeds`?"},
         Mistake{"BadSizeOfAScale", "{\"scales\": {\"small\": {\"size\": \"4\"}}, \"sweeps\": []}",
-                "s.json:1:32: error: expected a size like \"256x256\", found the text \"4\" (at "
+                "s.json:1:31: error: expected a size like \"256x256\", found the text \"4\" (at "
                 "scales.small.size)"},
         Mistake{"ScaleOfOneFrame", "{\"scales\": {\"small\": {\"max_frames\": 1}}, \"sweeps\": []}",
                 "expected a whole number from 2 to 1000000, found the number 1"},
