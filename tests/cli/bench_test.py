@@ -107,6 +107,7 @@ class Suites(CliTest):
         """Finished results stay, also if the process is killed and leaves a claim behind."""
         self.suite(reference={"spp": 2000, "depth": 3})
         run = subprocess.Popen(self.command("bench", "tiny.json", "-o", "out"), cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        self.assertIn("4 jobs to measure, 4 references", run.stdout.readline())
         self.assertIn("[1/4]", run.stdout.readline())
         while not list(self.folder.glob("out/references/*.claim")) and run.poll() is None:
             time.sleep(0.001)
