@@ -211,7 +211,8 @@ TEST(GazeJump, LightDoesNotJumpWithIt) {
   }
 }
 
-// Four frames after a jump the new fovea is better with the share of work that a saccade adds than without it.
+// Four frames after a jump the new fovea is better with the share of work that a saccade adds than without it: in the
+// mean over seeds, as that of one changes with every detail of the voxels.
 TEST(GazeJump, TheNewFoveaIsSoonGood) {
   constexpr uint64_t kJump = 24;
   Diagnostics warnings;
@@ -224,7 +225,8 @@ TEST(GazeJump, TheNewFoveaIsSoonGood) {
   options.set = {"spp=256"};
   const image::Picture truth =
       picture(runGraph("reference", s, options).frames.back(), "indirect", s.exposure);
-  const auto errorOf = [&](std::vector<std::string> set) {
+  const auto errorOf = [&](std::vector<std::string> set, uint32_t seed) {
+    options.seed = seed;
     set.insert(set.end(), {"shadow_map_size=512", "map_size=32", "vpl_count=200", "voxels=48"});
     options.frames = kJump + 5;
     options.set = std::move(set);
@@ -244,8 +246,11 @@ TEST(GazeJump, TheNewFoveaIsSoonGood) {
       }
     return sum / pixels;
   };
-  const double with = errorOf({}),
-               without = errorOf({"saccade_samples=1", "eye-paths.saccade_renew_frames=8"});
+  double with = 0, without = 0;
+  for (uint32_t seed = 1; seed <= 3; ++seed) {
+    with += errorOf({}, seed) / 3;
+    without += errorOf({"saccade_samples=1", "eye-paths.saccade_renew_frames=8"}, seed) / 3;
+  }
   std::printf("error four frames after a jump: %.6f, without a saccade's share %.6f\n", with, without);
   EXPECT_LT(with, 0.9 * without);
 }
