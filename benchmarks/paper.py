@@ -14,8 +14,8 @@ from page.results import Results  # noqa: E402
 from page.text import anchor, one_or_many  # noqa: E402
 from page.verdict import FAILS, HOLDS, MISSING, UNDECIDED  # noqa: E402
 
-HEADINGS = {FAILS: "Do not hold here", HOLDS: "Hold here", UNDECIDED: "Undecided, as seeds differ too much",
-            MISSING: "Not measured yet"}
+HEADINGS = {FAILS: "Do not hold in every scene", HOLDS: "Hold in every scene",
+            UNDECIDED: "Undecided, as seeds differ too much", MISSING: "Not measured yet"}
 
 
 def entries(results, folder):
@@ -32,9 +32,9 @@ def summary(found):
     claims = {verdict: [(entry, claim) for entry in found for claim in entry.claims if claim.verdict == verdict]
               for verdict in HEADINGS}
     count = {verdict: len(list_) for verdict, list_ in claims.items()}
-    lines = [f"Of {sum(count.values())} claims, **{count[FAILS]} do not hold here, {count[HOLDS]} hold**, "
-             f"{count[UNDECIDED]} are undecided and {count[MISSING]} not measured yet. They are those of the paper's "
-             "tables and text, and what its figures are there to show."]
+    lines = [f"Of {sum(count.values())} claims, **{count[FAILS]} do not hold in every scene, {count[HOLDS]} hold in "
+             f"all**, {count[UNDECIDED]} are undecided and {count[MISSING]} not measured yet. They are those of the "
+             "paper's tables and text, and what its figures are there to show."]
     for verdict, heading in HEADINGS.items():
         if claims[verdict]:
             lines.append(f"{heading} ({count[verdict]}):")

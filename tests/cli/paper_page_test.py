@@ -207,15 +207,17 @@ class Page(ToolTest):
             self.assertRegex(page, r"\| `sponza_plane` \| Sponza \| 2 \(3\.16\) \| 3 \(7\.63\) \| 1\.5 \(2\.5\) \| "
                              rf"{factor:g} \(1\.09\) \| ")
             summary = page[:page.index("## Table 1")]
-            heading = "Hold here" if factor == 1 else "Do not hold here"
+            heading = "Hold in every scene" if factor == 1 else "Do not hold in every scene"
             self.assertRegex(summary, rf"{heading} \(\d+\):\n\n(- .*\n)*- \[Table 1\][^\n]*{start}")
-        self.assertRegex(summary, r"Of \d+ claims, \*\*\d+ do not hold here, \d+ hold\*\*")
+        self.assertRegex(summary, r"Of \d+ claims, \*\*\d+ do not hold in every scene, \d+ hold in all\*\*")
 
     def test_counts_of_the_summary_are_those_of_the_sentences(self):
         self.stills()
         page = self.page()
-        counts = dict(re.findall(r"^(Hold here|Do not hold here|Not measured yet) \((\d+)\):$", page, re.M))
-        for heading, text in (("Hold here", "**Holds here**"), ("Do not hold here", "**Does not hold here**"),
+        headings = "Hold in every scene|Do not hold in every scene|Not measured yet"
+        counts = dict(re.findall(rf"^({headings}) \((\d+)\):$", page, re.M))
+        for heading, text in (("Hold in every scene", "**Holds here**"),
+                              ("Do not hold in every scene", "**Does not hold here**"),
                               ("Not measured yet", f": {MISSING}.\n")):
             self.assertEqual(int(counts.get(heading, 0)), page.count(text), heading)
 
