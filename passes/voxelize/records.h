@@ -12,8 +12,8 @@ SHARED_CONSTANT uint kTriangleBits = 22u;   // bits for the largest piece of an 
 // Weight of an emissive surface in the position and normal of a side; others weigh 1. A VPL stands at that position, and
 // the light of a lamp must not start inside the fitting or ceiling behind it.
 SHARED_CONSTANT float kEmissiveWeight = 256.0f;
-SHARED_CONSTANT uint kRow = 32768u;         // work groups in a row of a dispatch
-SHARED_CONSTANT uint kScanBlock = 256u;     // words per work group of a prefix sum
+SHARED_CONSTANT uint kRow = 32768u;      // work groups in a row of a dispatch
+SHARED_CONSTANT uint kScanBlock = 256u;  // words per work group of a prefix sum
 
 struct Phase {     // 0: static triangles, 1: dynamic ones
   uint groups[3];  // indirect dispatch: one invocation per side of the phase's voxels, 64 in a group
