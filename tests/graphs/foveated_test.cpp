@@ -292,6 +292,17 @@ TEST(LongFoveated, EyePathsWeighedByDensityCarryTheLightOfTracedPaths) {
   }
 }
 
+// The same framework with VPLs from light paths, each of which stands for the lit surface nearest to it.
+TEST(Foveated, VplsOfLightPathsCarryTheLightOfTracedPaths) {
+  const scene::Scene s = scene::builtin("cornellbox");
+  const auto traced = tracedIndirect(s, kEnergySize, 1, 64);
+  const auto found = indirectOf("ir_same", s, {"terms=direct", "bounces=1", "kernel=disc"}, 1);
+  const double want = meanOf(traced, kEnergySize, {0.5f, 0.5f}, 4, true);
+  const double got = meanOf(found, kEnergySize, {0.5f, 0.5f}, 4, true);
+  std::printf("[ MEASURED ] mean indirect radiance of ir_same / traced paths %.3f\n", got / want);
+  EXPECT_NEAR(got / want, 1, 0.1);
+}
+
 // Prints what the management of VPLs does to the light, for each weighting and number of VPLs. `importance-area` has
 // the least bias in the fovea, because it does not depend on how the VPLs were chosen and takes them as the picture
 // shows them, with their own maps and discs. This is why the kernel is `disc`, the one that the weighting compensates
