@@ -1,7 +1,7 @@
 """The steps of a frame, and the time that each takes."""
 from .results import mean_of, pass_times
 
-# Steps of a frame and the passes that belong to them; what is in none of them is drawing the scene.
+# Steps of a frame and the passes that belong to them. All other passes draw the scene and its direct light.
 STEPS = {
     "voxels and their light": ("voxelize", "light-inject", "mipmap"),
     "generation of VPLs": ("emit", "candidates", "radiance", "vpl-origins", "vpl-intensity"),

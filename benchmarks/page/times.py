@@ -31,8 +31,8 @@ def figure10(results, folder):
         file = folder / "figure10.png"
         stacked(file, bars, [*STEPS, SCENE], "milliseconds a frame, by step")
         entry.add(f"![Milliseconds of the steps of a frame]({file.name})")
-        entry.add("Milliseconds, medians over frames and means over seeds. `ours_all_maps` draws every map in every "
-                  "frame.")
+        entry.add("Times are in milliseconds: medians over frames and means over seeds. `ours_all_maps` draws every "
+                  "map in every frame.")
         entry.add(table(["scene", "graph", *STEPS, SCENE, "sum"], rows))
     else:
         entry.missing("Times of steps")

@@ -1,9 +1,9 @@
 // One attempt per invocation: a pixel of the region, the surface it shows, and one diffuse bounce from there. The
-// voxel side hit by the bounce becomes a candidate; it need not be visible to the eye. INTERSECTION 1: it lies where the
-// ray meets the side's plane, not at the side's average. TRACED 1: every fourth attempt first takes an eye path at
+// voxel side hit by the bounce becomes a candidate; it need not be visible to the eye. INTERSECTION 1: it lies where
+// the ray meets the side's plane, not at the side's average. TRACED 1: every fourth attempt first takes an eye path at
 // random, and the candidate lies where that ends, with the light found there. Voxels know only direct light, none of
-// emissive surfaces, and their averages close gaps that light comes through. EMITTED 1: no attempt starts at the eye; the
-// candidates are VPLs of light paths.
+// emissive surfaces, and their averages close gaps that light comes through. EMITTED 1: no attempt starts at the eye;
+// the candidates are VPLs of light paths.
 #include "device/texels.glsl"
 #include "scene/objects.glsl"
 #include "vpls/paraboloid.glsl"

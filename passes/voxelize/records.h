@@ -9,8 +9,8 @@ SHARED_CONSTANT uint kSmallColumns = 16u;   // a triangle with more columns of c
 SHARED_CONSTANT uint kChunkColumns = 256u;  // of this many columns, one work group each
 SHARED_CONSTANT uint kSumWords = 30u;       // of one side, see visit.glsl
 SHARED_CONSTANT uint kTriangleBits = 22u;   // bits for the largest piece of an object that deforms
-// Weight of an emissive surface in the position and normal of a side; others weigh 1. A VPL stands at that position, and
-// the light of a lamp must not start inside the fitting or ceiling behind it.
+// Weight of an emissive surface in the position and normal of a side; others weigh 1. A VPL stands at that position,
+// and the light of a lamp must not start inside the fitting or ceiling behind it.
 SHARED_CONSTANT float kEmissiveWeight = 256.0f;
 SHARED_CONSTANT uint kRow = 32768u;      // work groups in a row of a dispatch
 SHARED_CONSTANT uint kScanBlock = 256u;  // words per work group of a prefix sum

@@ -39,7 +39,7 @@ void main() {
   float len = length(normal);
   normal = len > 1e-3 ? normal / len : vec3(side == 0u ? 0.57735027 : -0.57735027);
   // As seen along the axis of its side, the surface covers no more than a face of the cell, and what lies behind its
-  // emissive part does not dim that.
+  // emissive part does not dim it.
   float face = 4294967296.0 / max(max(abs(normal.x), abs(normal.y)), abs(normal.z));
   float emissive = (sumAt(word + 14u) - area) / (kEmissiveWeight - 1.0);
   vec3 emission = sums3At(word + 8u) / max(emissive, min(area, face));

@@ -49,9 +49,9 @@ void addTo(uint word, precise vec3 x) {
   addTo(word + 4u, x.z);
 }
 
-// Words of a side: area, reflectance and emission (weighted by the area), weight, position and normal + 1 (weighted by
-// the weight), object, triangle. `triangle` counts from the first non-static one; all kTriangleBits are set if the object
-// does not deform.
+// Words of a side: area, reflectance and emission (times the area), weight, position and normal + 1 (times the weight),
+// object, triangle. `triangle` counts from the first non-static one; all kTriangleBits are set if the object does not
+// deform.
 void addPiece(uint side, Piece piece, vec3 normal, SurfacePoint surface, uint object, uint triangle) {
   uint word = side * kSumWords;
   bool emissive = surface.emission != vec3(0.0);

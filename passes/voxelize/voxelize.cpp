@@ -1,6 +1,6 @@
 // Surface voxels of the scene. Triangles are clipped to the cells that they overlap by a conservative test. Area,
-// position, normal, reflectance and emission are summed in fixed point, so the order of the atomics has no effect. In the
-// averages of position and normal, emissive surfaces weigh more (kEmissiveWeight).
+// position, normal, reflectance and emission are summed in fixed point, so the order of the atomics has no effect. In
+// the averages of position and normal, emissive surfaces weigh more (kEmissiveWeight).
 // Cells are first marked and then numbered by a prefix sum, since sums for every cell of the grid would not fit.
 // Static triangles are voxelised once; those of dynamic objects in every frame, into voxels of their own that hide
 // the static voxel of their cell, so the two are never averaged.

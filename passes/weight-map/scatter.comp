@@ -1,7 +1,8 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 // Every pixel gives its foveated weight to the voxel side in which its surface point lies; a side keeps the largest
 // weight (passes/vpls.md, weight-map), so the result does not depend on the order. Defines: WHOLE_IMAGE 0/1;
-// FROM_CENTRE 0/1, whether weights fall off from the gaze on and not from the edge of the fovea; BLOCK, pixels per invocation along an axis; GROUP, invocations per work group along an axis.
+// FROM_CENTRE 0/1, whether weights fall off from the gaze on and not from the edge of the fovea; BLOCK, pixels per
+// invocation along an axis; GROUP, invocations per work group along an axis.
 #include "scene/scene.glsl"
 #include "sampling/fovea.glsl"
 #include "voxels/voxel_trace.glsl"

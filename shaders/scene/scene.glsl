@@ -45,10 +45,10 @@ Material loadMaterial(uint material) {
 }
 
 // The number of texels after which a texture repeats along an axis. size: of the texture along it, texels; wrap: 0
-// repeats the texture, kWrapClamp and kWrapMirror are the other ways.
+// repeats the texture; kWrapClamp and kWrapMirror are the other ways.
 int texelPeriod(int size, uint wrap) { return wrap == kWrapMirror ? 2 * size : size; }
 
-// The coordinate `i` of a texel moved by whole periods into [0, period), but unchanged for kWrapClamp. The quotient is
+// The coordinate `i` of a texel moved by whole periods into [0, period), but unchanged for kWrapClamp. The division is
 // one of floats, as CPU devices divide integers lane by lane. A second step corrects the rounding of the first.
 int withinPeriod(int i, int size, uint wrap) {
   if (wrap == kWrapClamp) return i;
@@ -113,8 +113,8 @@ vec4 sampleSceneTexture(int texel, vec2 uv) {
   return sum;
 }
 
-// Alpha of a texture, as in sampleSceneTexture(), but without a loop: rays ask for it at every triangle, and CPU devices
-// limit the iterations of an invocation.
+// Alpha of a texture, as in sampleSceneTexture(), but without a loop: rays ask for it at every triangle, and CPU
+// devices limit the iterations of an invocation.
 float sampleSceneAlpha(int texel, vec2 uv) {
   if (!hasTexture(texel)) return 1.0;
   TexelSquare s = texelSquare(texel, uv);

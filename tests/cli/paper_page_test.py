@@ -268,7 +268,7 @@ class Page(ToolTest):
             self.assertIn(verdict, saved)
             self.assertRegex(page, rf"\| `room` \| Room \| 10 \(26\) \| {faster} \(3\) \| &gt; 8000 \(3000\) \| "
                              r"not measured yet \| &gt; 30 \(13\)")
-        # The least number of VPLs was enough: how much faster Ours would be with fewer is not known.
+        # As the least number of VPLs was enough, it is not known how much faster Ours would be with fewer.
         self.names.clear()
         self.result(TIMES, "room", "ours", time=time(10))
         self.result(TIMES, "room", "ir_eq", time=time(300), match={"value": 250, "reached": True, "steps": [{}]})
