@@ -1,6 +1,6 @@
 #include "passes/materials.h"
 
-#include "fovea/error.h"
+#include <string>
 
 namespace fovea::passes {
 
@@ -16,13 +16,12 @@ bool fullMaterials(const Parameters& parameters) { return parameters.text(kMater
 
 SizeExpr fullMaterials() { return parameter(kMaterials); }
 
-void checkMaterials(const PassContext& ctx) {
-  const VkExtent3D specular = ctx.extent("gbuffer.specular"), normal = ctx.extent("gbuffer.normal");
-  if (!fullMaterials(ctx.parameters()) ||
-      (specular.width == normal.width && specular.height == normal.height))
-    return;
-  throw Error(ExitCode::BadInput, "materials are `full`, but those of the G-buffer are not",
-              "wire the G-buffer that pass gbuffer makes");
+void requireMaterials(PassDeclaration& d) {
+  const std::string normal = "gbuffer.normal", specular = "gbuffer.specular";
+  d.require(!fullMaterials() ||
+                (same(widthOf(specular), widthOf(normal)) && same(heightOf(specular), heightOf(normal))),
+            "materials are `full`, but those of the G-buffer are not",
+            "wire the G-buffer that pass gbuffer makes");
 }
 
 }  // namespace fovea::passes

@@ -8,7 +8,7 @@ namespace fovea::passes {
 bool fullMaterials(const graph::Parameters& parameters);
 // 0 or 1.
 graph::SizeExpr fullMaterials();
-// Throws Error(BadInput) if materials are full, but the input `gbuffer` does not hold them, as it is no pass's.
-void checkMaterials(const graph::PassContext& ctx);
+// Requires that the input `gbuffer`, if it is wired, holds the materials if they are full; one of no pass may not.
+void requireMaterials(graph::PassDeclaration& d);
 
 }  // namespace fovea::passes

@@ -1,29 +1,23 @@
 #include "passes/sizes.h"
 
-#include "fovea/error.h"
-
 namespace fovea::passes {
-namespace {
 
-std::string text(uint32_t width, uint32_t height) {
-  return std::to_string(width) + "x" + std::to_string(height);
+using namespace graph;
+
+void requireSize(PassDeclaration& d, const std::string& port, const SizeExpr& width, const SizeExpr& height,
+                 const std::string& of, const std::string& remedy) {
+  d.require(same(widthOf(port), width) && same(heightOf(port), height),
+            "`" + port + "` is not of the size of " + of, remedy);
 }
 
-}  // namespace
-
-void checkSize(const graph::PassContext& ctx, const std::string& port, glm::uvec2 size, const std::string& of,
-               const std::string& remedy) {
-  const VkExtent3D its = ctx.extent(port);
-  if (size == glm::uvec2(its.width, its.height)) return;
-  throw Error(
-      ExitCode::BadInput,
-      "`" + port + "` has " + text(its.width, its.height) + " pixels, " + of + " has " + text(size.x, size.y),
-      remedy);
+void requireSameSize(PassDeclaration& d, const std::string& port, const std::string& other) {
+  requireSize(d, port, widthOf(other), heightOf(other), "`" + other + "`", "wire both to passes of one view");
 }
 
-void checkSameSize(const graph::PassContext& ctx, const std::string& port, const std::string& other) {
-  const VkExtent3D size = ctx.extent(other);
-  checkSize(ctx, port, {size.width, size.height}, "`" + other + "`", "wire both to passes of one view");
+void requireMaps(PassDeclaration& d, const std::string& atlas, const std::string& vpls) {
+  d.require(atMost(countOf(vpls), ceilDiv(widthOf(atlas), heightOf(atlas)) * layersOf(atlas)),
+            "`" + atlas + "` holds fewer maps than there are VPLs",
+            "wire the same VPLs to the atlas and to this pass");
 }
 
 }  // namespace fovea::passes

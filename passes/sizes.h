@@ -1,18 +1,19 @@
-// Checks of the sizes of images that are wired to a pass.
+// Requirements on the sizes of images that are wired to a pass.
 #pragma once
 
-#include <glm/glm.hpp>
 #include <string>
 
-#include "fovea/pass.h"
+#include "fovea/declaration.h"
 
 namespace fovea::passes {
 
-// Throws Error(BadInput) unless the image at a port of the pass is of this size, which is that of `of`: "its view".
-void checkSize(const graph::PassContext& ctx, const std::string& port, glm::uvec2 size, const std::string& of,
-               const std::string& remedy);
-// The same with the size of another port, which differs if they come from passes that look through views of
-// different sizes.
-void checkSameSize(const graph::PassContext& ctx, const std::string& port, const std::string& other);
+// Requires that the image at an input has this size, which is that of `of`: "its view".
+void requireSize(graph::PassDeclaration& d, const std::string& port, const graph::SizeExpr& width,
+                 const graph::SizeExpr& height, const std::string& of, const std::string& remedy);
+// The same with the size of another input, which differs if they come from passes that look through views of different
+// sizes.
+void requireSameSize(graph::PassDeclaration& d, const std::string& port, const std::string& other);
+// Requires that an atlas of square maps side by side, if it is wired, has a map for each VPL.
+void requireMaps(graph::PassDeclaration& d, const std::string& atlas, const std::string& vpls);
 
 }  // namespace fovea::passes

@@ -59,6 +59,18 @@ size_t editDistance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
+// A file that is used twice, such as that of a sub-graph, would tell each of its mistakes twice.
+bool isTold(const std::vector<Diagnostic>& list, const Diagnostic& d) {
+  return std::any_of(list.begin(), list.end(), [&](const Diagnostic& other) {
+    return other.where.line == d.where.line && other.where.column == d.where.column &&
+           other.message == d.message && other.path == d.path && other.where.file == d.where.file;
+  });
+}
+
+void addOnce(std::vector<Diagnostic>& list, Diagnostic d) {
+  if (!isTold(list, d)) list.push_back(std::move(d));
+}
+
 }  // namespace
 
 std::string Diagnostic::format() const {
@@ -78,13 +90,12 @@ std::string Diagnostic::format() const {
 }
 
 void Diagnostics::error(SourceLocation where, std::string path, std::string message, std::string remedy) {
-  list_.push_back(
-      {Severity::Error, std::move(where), std::move(path), std::move(message), std::move(remedy)});
+  addOnce(list_, {Severity::Error, std::move(where), std::move(path), std::move(message), std::move(remedy)});
 }
 
 void Diagnostics::warning(SourceLocation where, std::string path, std::string message, std::string remedy) {
-  list_.push_back(
-      {Severity::Warning, std::move(where), std::move(path), std::move(message), std::move(remedy)});
+  addOnce(list_,
+          {Severity::Warning, std::move(where), std::move(path), std::move(message), std::move(remedy)});
 }
 
 bool Diagnostics::hasErrors() const {

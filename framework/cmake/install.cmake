@@ -12,6 +12,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/samples/scenes DESTINATION ${CMAKE_INSTA
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/passes DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea
   FILES_MATCHING PATTERN "*.pass.json" PATTERN "*.comp" PATTERN "*.frag" PATTERN "*.vert" PATTERN "*.glsl" PATTERN "records.h")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/benchmarks/suites ${PROJECT_SOURCE_DIR}/benchmarks/page
+  ${PROJECT_SOURCE_DIR}/benchmarks/suite_page
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks
   FILES_MATCHING PATTERN "*.json" PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/benchmarks/paper.json ${PROJECT_SOURCE_DIR}/benchmarks/paper.py

@@ -21,6 +21,8 @@ std::shared_ptr<Device> openDevice(const ExistingDevice& existing, const DeviceO
   return withShaders(std::make_shared<Device>(existing, options));
 }
 
+void rereadShaders(Device& device) { device.shaders().forget(); }
+
 std::string nameOf(const Device& device) { return device.name(); }
 
 }  // namespace fovea::gpu

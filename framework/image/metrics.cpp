@@ -312,4 +312,14 @@ PerRegion<SequenceMeasures> SequenceComparison::result() const {
   return result;
 }
 
+std::vector<std::pair<const char*, double>> namedMeasures(const Measures& m) {
+  return {{"mse", m.mse},
+          {"psnr", m.psnr},
+          {"relmse", m.relMse},
+          {"flip", m.flip},
+          {"blocks", m.blocks},
+          {"noise_floor", m.noiseFloor},
+          {"relmse_noise_floor", m.relMseNoiseFloor}};
+}
+
 }  // namespace fovea::image

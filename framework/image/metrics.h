@@ -10,10 +10,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 
+#include "fovea/compare.h"
 #include "fovea/image.h"
 
 namespace fovea::image {
@@ -48,13 +48,6 @@ struct Halves {
   Picture a, b;
 };
 
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-template <class T>
-struct PerRegion {
-  T fovea, periphery, whole;
-};
-
 // Mean over pixels and RGB of the squared difference of T; NaN for a region without pixels. Throws
 // as checkComparable() does.
 PerRegion<double> meanSquaredError(const Picture& a, const Picture& b, const Disc& fovea);
@@ -65,19 +58,6 @@ PerRegion<double> meanSquaredError(const Picture& a, const Picture& b, const Dis
 // pixels, and the larger result counts. It is NaN for a region without such lines, or if one of the pictures is uniform
 // beside them. Throws as checkComparable() does.
 PerRegion<double> blockiness(const Picture& image, const Picture& reference, const Disc& fovea);
-
-// NaN means unknown, as in a region without pixels.
-struct Measures {
-  uint64_t pixels = 0;
-  double mse = kUnknown;   // of T, minus noiseFloor if known
-  double psnr = kUnknown;  // dB below 1; infinite where mse is not above 0
-  // Mean of (a - g)^2 / (g + 0.01)^2 of the radiance, minus relMseNoiseFloor if known.
-  double relMse = kUnknown;
-  double flip = kUnknown;        // mean of flip(), including the reference's noise
-  double blocks = kUnknown;      // blockiness() of the picture
-  double noiseFloor = kUnknown;  // the reference's share of mse
-  double relMseNoiseFloor = kUnknown;
-};
 
 // All images must have the size of the reference; otherwise throws Error(BadInput) as checkComparable() does.
 PerRegion<Measures> compare(const Picture& image, const Picture& reference,

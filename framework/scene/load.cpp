@@ -66,22 +66,11 @@ Scene loadFile(const fs::path& file, Diagnostics& warnings, const LoadOptions& o
   return scene;
 }
 
-std::vector<std::string> knownNames() {
-  std::vector<std::string> names = builtinNames();
-  std::error_code ec;
-  for (const fs::path& folder : sceneSearchPath())
-    for (const fs::directory_entry& e : fs::directory_iterator(folder, ec))
-      if (e.path().extension() == ".json") names.push_back(e.path().stem().string());
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
-}
-
 [[noreturn]] void unknownScene(const std::string& name) {
-  const std::vector<std::string> names = knownNames();
+  const std::vector<std::string> known = names();
   std::string list;
-  for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
-  const std::string nearest = nearestName(name, names);
+  for (const std::string& n : known) list += (list.empty() ? "" : ", ") + n;
+  const std::string nearest = nearestName(name, known);
   throw Error(ExitCode::BadInput, "there is no scene `" + name + "`",
               (nearest.empty() ? "" : "did you mean `" + nearest + "`? ") + "known scenes: " + list +
                   "; or give a .json, .gltf or .glb file");
@@ -102,7 +91,30 @@ std::vector<fs::path> modelSearchPath() {
   return list;
 }
 
-std::vector<fs::path> sceneSearchPath() { return dataFolders("scenes"); }
+std::vector<fs::path> sceneSearchPath() {
+  std::vector<fs::path> list;
+  for (const fs::path& folder : dataFolders("scenes")) {
+    list.push_back(folder);
+    std::error_code ec;
+    std::vector<fs::path> below;
+    for (const fs::directory_entry& e : fs::directory_iterator(folder, ec))
+      if (e.is_directory(ec)) below.push_back(e.path());
+    std::ranges::sort(below);
+    list.insert(list.end(), below.begin(), below.end());
+  }
+  return list;
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> names = builtinNames();
+  std::error_code ec;
+  for (const fs::path& folder : sceneSearchPath())
+    for (const fs::directory_entry& e : fs::directory_iterator(folder, ec))
+      if (e.path().extension() == ".json") names.push_back(e.path().stem().string());
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
 
 Scene load(const std::string& nameOrFile, Diagnostics& warnings, const LoadOptions& options) {
   const ContentBudget budget;
@@ -142,6 +154,13 @@ glm::quat lookAlong(glm::vec3 direction, glm::vec3 up) {
     right = glm::cross(std::abs(back.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0), back);
   right = glm::normalize(right);
   return glm::normalize(glm::quat_cast(glm::mat3(right, glm::cross(back, right), back)));
+}
+
+Camera lookAt(glm::vec3 position, glm::vec3 target, glm::vec3 up) {
+  Camera camera;
+  camera.position = position;
+  camera.orientation = lookAlong(target - position, up);
+  return camera;
 }
 
 void appendModel(Scene& scene, Scene&& model, const Placement& placement) {

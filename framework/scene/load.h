@@ -11,7 +11,8 @@ namespace fovea::scene {
 // Folders that are searched for the models that a scene file names: $FOVEA_SCENES (colon-separated), then
 // ../shared/scenes beside the source folder or the working folder.
 std::vector<std::filesystem::path> modelSearchPath();
-// Folders that are searched for scene files given by bare name: samples/scenes of the source or the installation.
+// Folders that are searched for scene files given by bare name: samples/scenes of the source or the installation, and
+// the folders in it.
 std::vector<std::filesystem::path> sceneSearchPath();
 
 // Loads a glTF model on its own, without a default view or light. Guards against hostile files; gltf/check.h

@@ -370,3 +370,15 @@ std::string describeInWords(const Compared& c) {
 std::string formatMeasure(double value) { return std::isnan(value) ? "-" : fmt::format("{:.4g}", value); }
 
 }  // namespace fovea::session
+
+namespace fovea::image {
+
+PerRegion<Measures> compare(const File& image, const File& reference, const CompareOptions& options) {
+  session::CompareOptions given{options.layer, {}, options.radius, options.exposure};
+  if (options.gaze) given.gaze = fmt::format("{},{}", options.gaze->x, options.gaze->y);
+  const session::Compared c =
+      session::prepared({"the picture", image}, {"the reference", reference}, {}, given);
+  return compare(c.image, c.reference, c.halves, c.fovea, options.pixelsPerDegree);
+}
+
+}  // namespace fovea::image

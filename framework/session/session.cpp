@@ -9,7 +9,10 @@
 #include <map>
 
 #include "framework/base/paths.h"
+#include "framework/graph/document/document.h"
+#include "framework/graph/pass/pass_file.h"
 #include "framework/graph/pass/registry.h"
+#include "framework/graph/report/report.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/scene.h"
 #include "framework/session/course.h"
@@ -21,6 +24,25 @@ namespace fovea::graph {
 void loadPlugin(const std::filesystem::path& file) { Registry::global().loadPlugin(file); }
 
 void addPasses(const std::filesystem::path& folder) { Registry::global().addFolder(folder); }
+
+void rereadPasses() { Registry::global().rereadFiles(); }
+
+void addPass(PassDeclaration declaration, std::function<std::unique_ptr<Pass>()> make) {
+  Registry::global().addOrReplace(std::move(declaration), std::move(make));
+}
+
+PassDeclaration hostPass(const std::string& type, std::string_view json, const std::string& source) {
+  Diagnostics messages;
+  PassDeclaration declaration = readHostPass(json::parse(json, source), type, messages);
+  messages.throwIfErrors();
+  return declaration;
+}
+
+std::vector<const PassDeclaration*> passTypes() {
+  std::vector<const PassDeclaration*> list;
+  for (const std::string& type : Registry::global().types()) list.push_back(Registry::global().find(type));
+  return list;
+}
 
 namespace {
 
@@ -59,7 +81,7 @@ std::vector<std::string> merged(std::vector<std::string> values, const std::vect
 }  // namespace
 
 struct Session::Impl {
-  std::string graph;
+  Document graph;
   const scene::Scene& scene;
   SessionOptions options;
   scene::Geometry geometry;
@@ -79,9 +101,9 @@ void Session::Impl::use(SessionOptions changed) {
   LoadOptions load;
   for (const std::string& text : changed.set) load.overrides.push_back(parseOverride(text));
   load.searchPaths = dataFolders("graphs");
-  Registry::global().addFolderBeside(findGraph(graph, load.searchPaths));
+  Registry::global().addFolderBeside(graph.file());
   Diagnostics messages;
-  const Description description = graph::load(graph, load, messages);
+  const Description description = resolve(graph, load, messages);
   if (!changed.device) changed.device = gpu::openDevice();
   session::GraphRun::Options how;
   how.size = changed.size;
@@ -137,7 +159,7 @@ scene::Moment Session::Impl::momentOf(const FrameOptions& frame) {
                       frame.cut || frame.index == 0});
 }
 
-Session::Session(const std::string& graph, const scene::Scene& scene, const SessionOptions& options)
+Session::Session(const Document& graph, const scene::Scene& scene, const SessionOptions& options)
     : impl_(std::make_unique<Impl>(Impl{.graph = graph, .scene = scene, .geometry = scene::flatten(scene)})) {
   if (options.size.x == 0 || options.size.y == 0)
     throw Error(ExitCode::Usage,
@@ -156,7 +178,7 @@ FrameResult Session::render(const FrameOptions& frame) {
   check(frame);
   impl_->checkInputs();
   session::GraphRun& run = *impl_->run;
-  run.submit(run.frame(impl_->momentOf(frame)), true, !impl_->ports.empty());
+  run.submit(run.frame(impl_->momentOf(frame)), frame.read, frame.read && !impl_->ports.empty());
   return *run.executor().next();
 }
 
@@ -183,6 +205,27 @@ image::Image Session::picture(const FrameResult& frame, const std::string& name)
     throw Error(ExitCode::Usage, "`" + name + "` was not read back", "name it in Session::read()");
   return session::toImage(it->second);
 }
+
+std::vector<RecordField> Session::fields(const std::string& element) const {
+  const ElementTypes types = impl_->run->executor().elementTypes();
+  const auto found = types.find(element);
+  return found != types.end() ? found->second : std::vector<RecordField>();
+}
+
+std::map<std::string, ResourceDesc> Session::inputs() const {
+  std::map<std::string, ResourceDesc> inputs;
+  for (const BoundResource& resource : impl_->run->graph().resources)
+    if (resource.external) inputs.emplace(resource.name, resource.desc);
+  return inputs;
+}
+
+std::vector<std::string> Session::outputs() const {
+  std::vector<std::string> names;
+  for (const BoundOutput& output : impl_->run->graph().outputs) names.push_back(output.name);
+  return names;
+}
+
+std::string Session::plan(PlanForm form) const { return writePlan(*impl_->run->plan(), form); }
 
 const std::string& Session::passName(uint32_t pass) const { return impl_->run->graph().passes.at(pass).name; }
 

@@ -38,14 +38,13 @@ class Compose : public Pass {
     d.output("indirect", picture, Usage::ColorAttachment,
              "rgb: indirect radiance towards the eye, rho E / pi and glossy reflections; background 0");
     d.output("radiance", picture, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");
+    requireMaterials(d);
     d.fullscreen("compose/compose.frag", {"indirect", "radiance"})
         .define("HAS_DIRECT", wired("direct"))
         .define("GLOSS", fullMaterials() * (SizeExpr(2) - wired("gloss")))
         .define("REFLECTIONS", wired("reflections"));
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override { checkMaterials(ctx); }
 };
 
 FOVEA_PASS(Compose);

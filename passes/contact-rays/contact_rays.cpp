@@ -31,6 +31,9 @@ void declarePorts(PassDeclaration& d) {
            "rgb: irradiance / pi from VPLs, W/(sr m^2); a: `longer` where surfaces meet, else all 0");
   d.output("tallies", buffer("VplTally", kTallyBytes, countOf("vpls")), write,
            "x: rays to the VPL in a slot, y: those that reached it; a quarter is forgotten in each frame");
+  requireSize(d, "contacts", viewWidth(), viewHeight(), "its view",
+              "wire contacts of the view that the pass looks through");
+  requireSameSize(d, "origin", "contacts");
 }
 
 void declareParameters(PassDeclaration& d) {
@@ -75,13 +78,6 @@ class ContactRays : public Pass {
     d.step("contact-rays/filter.comp").define("FILTER", parameter("filter"));
     d.step("contact-rays/tallies.comp").threads(countOf("vpls"));
     return d;
-  }
-
-  void prepare(PrepareContext& ctx) override {
-    const VkExtent3D view = ctx.extent("unfiltered");
-    checkSize(ctx, "contacts", {view.width, view.height}, "its view",
-              "wire contacts of the view that the pass looks through");
-    if (ctx.has("origin")) checkSameSize(ctx, "origin", "contacts");
   }
 
   void record(RecordContext& ctx) override {

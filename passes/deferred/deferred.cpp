@@ -5,7 +5,6 @@
 #include <glm/trigonometric.hpp>
 #include <string>
 
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
 #include "passes/acuity.h"
@@ -103,6 +102,7 @@ class Deferred : public Pass {
     d.scratch("edge_pixels", buffer("uint", 4, width * height), Usage::StorageWrite | Usage::TexelRead,
               "pixels whose filter window extends beyond their surface: x | y << 16");
     addParameters(d);
+    addRequirements(d);
     addSteps(d);
     d.counter("incomplete",
               "pixels for which fewer than half of the subsets have a sample on the same surface nearby");
@@ -115,21 +115,9 @@ class Deferred : public Pass {
   }
 
   void prepare(PrepareContext& ctx) override {
-    const Parameters& p = ctx.parameters();
-    const int64_t interleave = p.integer("interleave");
-    if ((interleave & (interleave - 1)) != 0)
-      throw Error(ExitCode::BadInput, "interleave " + std::to_string(interleave) + " is not a power of two",
-                  "use 1, 2, 4 or 8");
     count_ = uint32_t(ctx.count("vpls"));
     side_ = uint32_t(ctx.evaluate(subsets()));
     masked_ = ctx.has("shade");
-    if (masked_) checkMask(ctx, uint32_t(interleave));
-    if (masked_ && ctx.evaluate(coarse()) != 0)
-      throw Error(ExitCode::BadInput,
-                  "`shade` says which blocks to shade, so `periphery` has nothing to decide",
-                  "leave `periphery` at 1, or `shade` unwired");
-    checkMaterials(ctx);
-    if (ctx.has("near_gloss")) checkNearGloss(ctx);
     preparePages(ctx, 1, pages_);
     if (ctx.evaluate(coarse()) != 0) preparePages(ctx, 2, coarsePages_);
   }
@@ -193,8 +181,8 @@ class Deferred : public Pass {
     d.parameter("near_light", choice("all", {"none", "map", "all"}),
                 "content of `near_field`, as `light` of pass near-field; with `none` it is left out");
     declareClamp(d, "least distance for the kernel `clamp`; 0 disables the clamp");
-    d.parameter("interleave", integer(4, 1, 8),
-                "width n of a block: its n x n pixels divide the VPLs among them; 1, 2, 4 or 8, reduced if a "
+    d.parameter("interleave", integer(4, {1, 2, 4, 8}),
+                "width n of a block: its n x n pixels divide the VPLs among them; reduced if a "
                 "subset would hold fewer than 4 VPLs");
     d.parameter("shadow_bias", real(1, 0, 100),
                 "tolerance of the shadow test, in half texels of the map's footprint at the surface");
@@ -246,30 +234,26 @@ class Deferred : public Pass {
         .define("REFLECTIONS", 0);
   }
 
-  static void checkNearGloss(PrepareContext& ctx) {
-    if (!ctx.has("near_field"))
-      throw Error(ExitCode::BadInput, "`near_gloss` is wired without the light that it is a part of",
-                  "wire near-field's mean to near_field, too, or leave `near_gloss` unwired");
-    checkSameSize(ctx, "near_gloss", "near_field");
-  }
-
-  static void checkMask(PrepareContext& ctx, uint32_t interleave) {
-    if (!ctx.has("base"))
-      throw Error(ExitCode::BadInput, "`shade` leaves pixels out, but nothing is wired to `base`",
-                  "wire reproject.irradiance to base");
-    const VkExtent3D size = ctx.extent("gbuffer.distance"), mask = ctx.extent("shade.mask"),
-                     base = ctx.extent("base");
-    const uint64_t blocks =
-        uint64_t((size.width + interleave - 1) / interleave) * ((size.height + interleave - 1) / interleave);
-    if (mask.width != size.width || mask.height != size.height || base.width != size.width ||
-        base.height != size.height)
-      throw Error(ExitCode::BadInput, "`shade` and `base` are of another size than the image",
-                  "make them from the same G-buffer");
-    if (ctx.count("shade.blocks") != blocks)
-      throw Error(ExitCode::BadInput,
-                  "`shade` lists blocks of another size than " + std::to_string(interleave) + " x " +
-                      std::to_string(interleave) + " pixels",
-                  "give both passes the same `interleave`");
+  static void addRequirements(PassDeclaration& d) {
+    const SizeExpr width = widthOf("gbuffer.distance"), height = heightOf("gbuffer.distance"),
+                   block = parameter("interleave");
+    d.require(wired("base") || !wired("shade"), "`shade` leaves pixels out, but nothing is wired to `base`",
+              "wire reproject.irradiance to base");
+    requireSize(d, "shade.mask", width, height, "the image", "make it from the same G-buffer");
+    d.require(!wired("shade") || (same(widthOf("base"), width) && same(heightOf("base"), height)),
+              "`base` is not of the size of the image", "make it from the same G-buffer");
+    d.require(same(countOf("shade.blocks"), ceilDiv(width, block) * ceilDiv(height, block)),
+              "`shade` lists blocks of another size than `interleave`",
+              "give both passes the same `interleave`");
+    d.require(!wired("shade") || same(parameter("periphery"), 1),
+              "`shade` says which blocks to shade, so `periphery` has nothing to decide",
+              "leave `periphery` at 1, or `shade` unwired");
+    d.require(wired("near_field") || !wired("near_gloss"),
+              "`near_gloss` is wired without the light that it is a part of",
+              "wire near-field's mean to near_field, too, or leave `near_gloss` unwired");
+    requireSameSize(d, "near_gloss", "near_field");
+    requireMaps(d, "atlas", "vpls");
+    requireMaterials(d);
   }
 
   // The number of VPLs in a page is a constant in the shader, so there is a kernel for each: for a full first page, for
@@ -288,11 +272,6 @@ class Deferred : public Pass {
     if (ctx.has("atlas")) {
       const VkExtent3D maps = ctx.extent("atlas");
       const uint64_t perLayer = std::max(maps.width / std::max(maps.height, 1u), 1u);
-      if (perLayer * ctx.layers("atlas") < count_)
-        throw Error(ExitCode::BadInput,
-                    "the atlas holds " + std::to_string(perLayer * ctx.layers("atlas")) + " maps for " +
-                        std::to_string(count_) + " VPLs",
-                    "wire the same VPLs to the atlas and to the shading");
       defines["TILED"] = std::to_string(int(perLayer > 1));
     }
     for (uint32_t first = 0; first < count_; first += scene::kVplPage) {

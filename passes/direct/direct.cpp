@@ -48,10 +48,9 @@ class Direct : public Pass {
     shade("many lights", 0);
     shade("one light", 1);
     shade("one map", 2);
+    requireMaterials(d);
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override { checkMaterials(ctx); }
 
   void record(RecordContext& ctx) override {
     const std::vector<scene::Light>& lights = ctx.frame().lights;

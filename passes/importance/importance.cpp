@@ -1,7 +1,6 @@
 // Foveated importance of VPLs: how much of the surface near the gaze a VPL can light (passes/vpls.md, importance).
 #include <string>
 
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
 #include "passes/bundles.h"
@@ -17,7 +16,6 @@ constexpr uint32_t kGroupVpls = 16;  // VPLs per work group
 class Importance : public Pass {
  public:
   static PassDeclaration declaration();
-  void prepare(PrepareContext& ctx) override;
 };
 
 PassDeclaration Importance::declaration() {
@@ -67,18 +65,11 @@ PassDeclaration Importance::declaration() {
   };
   estimate("rate candidates", true, "candidates").when(parameter("rate_candidates"));
   estimate("rate VPLs", false, "vpls");
+  d.require(!parameter("luminance") || wired("radiance"), "`luminance` needs the input `radiance`",
+            "wire `radiance` to light-inject, or set luminance to false");
+  d.require(!is("method", "cones") || wired("mips"), "method `cones` needs the input `mips`",
+            "wire `mips` to mipmap, or set method to `rays`");
   return d;
-}
-
-void Importance::prepare(PrepareContext& ctx) {
-  const Parameters& p = ctx.parameters();
-  const bool cones = p.text("method") == "cones", luminance = p.flag("luminance");
-  if (luminance && !ctx.has("radiance"))
-    throw Error(ExitCode::BadInput, "parameter `luminance` needs the input `radiance`",
-                "wire `radiance` to light-inject, or set luminance to false");
-  if (cones && !ctx.has("mips"))
-    throw Error(ExitCode::BadInput, "method `cones` needs the input `mips`",
-                "wire `mips` to mipmap, or set method to `rays`");
 }
 
 FOVEA_PASS(Importance);

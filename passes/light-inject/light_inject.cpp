@@ -101,10 +101,11 @@ class LightInject : public Pass {
 
   void record(RecordContext& ctx) override {
     const scene::Frame& frame = ctx.frame();
-    const bool stay = gpu_ == frame.gpu && std::equal(lights_.begin(), lights_.end(), frame.lights.begin(),
-                                                      frame.lights.end(), same);
-    const bool all = ctx.firstFrame() || !stay || !ctx.parameters().flag("keep");
-    const scene::MoverBoxes now = scene::moverBoxes(frame), either = scene::around(now, before_);
+    auto& before = ctx.memory<Before>();
+    const bool stay = before.gpu == frame.gpu && std::equal(before.lights.begin(), before.lights.end(),
+                                                            frame.lights.begin(), frame.lights.end(), same);
+    const bool all = !stay || !ctx.parameters().flag("keep");
+    const scene::MoverBoxes now = scene::moverBoxes(frame), either = scene::around(now, before.movers);
     const uint32_t layers = scene::shadowLayers(frame.lights);
     const bool moving = !either.empty();
     Commands cover = ctx.step("covered");
@@ -117,16 +118,17 @@ class LightInject : public Pass {
         .constant("moving", uint32_t(moving))
         .dispatchIndirect("work", 16);
     ctx.run("light, " + lights);
-    lights_ = frame.lights;
-    gpu_ = frame.gpu;
-    before_ = now;
+    before = {frame.lights, frame.gpu, now};
   }
 
  private:
   static inline const std::array<std::string, 3> kLights = {"many lights", "one light", "one map"};
-  std::vector<scene::Light> lights_;      // lights of the previous frame
-  const scene::GpuScene* gpu_ = nullptr;  // scene of the previous frame
-  scene::MoverBoxes before_;              // bounds of the moving objects in the previous frame
+  // The previous frame.
+  struct Before {
+    std::vector<scene::Light> lights;
+    const scene::GpuScene* gpu = nullptr;
+    scene::MoverBoxes movers;  // bounds of the moving objects
+  };
 };
 
 FOVEA_PASS(LightInject);

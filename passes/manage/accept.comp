@@ -33,7 +33,7 @@ void testSlot(uint slot) {
   uint before = quantiseImportance(vpl.previousImportance);
   uint stream = randomStream(seed, frameIndex, kManageStream, slot);
   uint u = hashCombine(stream, 0u) >> 8;
-  // `random` reuses as many as `linear` would.
+  // Unless it has a share of its own, `random` reuses as many as `linear` would.
   bool accepted = reuse == kReuseCosine ? acceptedCosine(importance, before, u) : acceptedLinear(importance, before, u);
   uint key = reuse == kReuseRandom ? hashCombine(stream, 1u) >> 8 : kImportanceMax - importance;
   if (reuse != kReuseRandom && mostFailing() < slots) key = key >> 1 | (accepted ? 0u : 0x800000u);  // failed last

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <string>
 
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
@@ -21,8 +20,26 @@ constexpr uint32_t kMost = 65536;  // limit of slots and of candidates; keeps su
 class Manage : public Pass {
  public:
   static PassDeclaration declaration();
-  void prepare(PrepareContext& ctx) override;
 };
+
+void addRequirements(PassDeclaration& d) {
+  d.require(atMost(countOf("candidates"), int(kMost)), "there are more than 65536 candidates",
+            "lower the `count` of the pass that finds them");
+  d.require(same(countOf("vpls"), parameter("count")), "`vpls` has another number of slots than `count`",
+            "set `count` to the slots of the list that comes in");
+  d.require(same(countOf("vpl_importance"), parameter("count")),
+            "`vpl_importance` has another number of elements than there are slots",
+            "wire the importances of `vpls`");
+  d.require(same(countOf("candidate_importance"), countOf("candidates")),
+            "`candidate_importance` has another number of elements than there are candidates",
+            "wire the importances of `candidates`");
+  d.require(wired("candidate_importance") || is("placement", "light"),
+            "candidates compete by importance, and theirs is not known",
+            "wire `candidate_importance`, or set placement to `light`");
+  d.require(wired("change") || atMost(parameter("change_turnover"), 0),
+            "parameter `change_turnover` needs the input `change`",
+            "wire `change` to eye-paths, or set change_turnover to 0");
+}
 
 void addScratch(PassDeclaration& d) {
   const Usage both = Usage::StorageRead | Usage::StorageWrite;
@@ -63,6 +80,7 @@ void setConstants(const RecordContext& ctx, Commands& commands) {
       .constant("mostRejected", uint32_t(std::ceil(p.real("turnover") * slots)))
       .constant("changeTurnover", float(p.real("change_turnover")))
       .constant("contested", uint32_t(std::ceil(p.real("saccade_turnover") * ctx.frame().saccade * slots)))
+      .constant("randomShare1024ths", uint32_t(std::lround(1024.0 * p.real("random_share"))))
       .constant("lightFloor64ths", uint32_t(std::lround(64.0 * p.real("light_floor"))))
       .constant("densityConstant64ths", uint32_t(std::lround(64.0 * p.real("density_constant"))));
 }
@@ -117,7 +135,10 @@ PassDeclaration Manage::declaration() {
       "reuse", choice("linear", {"linear", "cosine", "random"}),
       "which VPLs are reused without competing (Eq. 1), where C is the ratio of the new importance to "
       "the previous one; linear: with probability min(C, 1); cosine: with probability 1 - cos(pi/2 "
-      "min(C, 1)); random: as many as linear, chosen at random");
+      "min(C, 1)); random: the share `random_share`, or as many as linear, chosen at random");
+  d.parameter("random_share", real(0, 0, 1, "VPLs' share"),
+              "for `reuse` `random`, share of the VPLs that is reused, rounded to 1/1024; 0 means as many as "
+              "`linear` would reuse");
   d.parameter("keep", integer(0, 0, kMost),
               "candidates left after thinning (K), each kept with probability min(1, K I / sum I); 0 means "
               "the number `limit`, or for `placement` `light` the number of free slots");
@@ -153,6 +174,7 @@ PassDeclaration Manage::declaration() {
   d.parameter("cell", real(1.0 / 48, 1.0 / 64, 1, "scene diagonals"),
               "edge length of a cell of the density grid");
 
+  addRequirements(d);
   d.counter("kept", "old VPLs kept");
   d.counter("deleted", "old VPLs deleted");
   d.counter("added", "candidates that become VPLs");
@@ -162,34 +184,6 @@ PassDeclaration Manage::declaration() {
   d.counter("dense", "old VPLs and candidates refused because their cell was full");
   addSteps(d);
   return d;
-}
-
-void require(const PrepareContext& ctx, const char* port, uint64_t wanted, const char* remedy) {
-  const uint64_t count = ctx.count(port);
-  if (count == wanted) return;
-  throw Error(ExitCode::BadInput,
-              "pass manage: `" + std::string(port) + "` has " + std::to_string(count) + " elements, not " +
-                  std::to_string(wanted),
-              remedy);
-}
-
-void Manage::prepare(PrepareContext& ctx) {
-  const uint64_t candidates = ctx.count("candidates");
-  if (candidates > kMost)
-    throw Error(
-        ExitCode::BadInput,
-        "pass manage: " + std::to_string(candidates) + " candidates are more than " + std::to_string(kMost),
-        "lower the `count` of the pass that finds them");
-  require(ctx, "vpls", ctx.count("list"), "set `count` to the slots of the list that comes in");
-  require(ctx, "vpl_importance", ctx.count("list"), "wire the importances of `vpls`");
-  if (ctx.has("candidate_importance"))
-    require(ctx, "candidate_importance", candidates, "wire the importances of `candidates`");
-  else if (ctx.parameters().text("placement") != "light")
-    throw Error(ExitCode::BadInput, "pass manage: candidates compete by importance, and theirs is not known",
-                "wire `candidate_importance`, or set placement to `light`");
-  if (ctx.parameters().real("change_turnover") > 0 && !ctx.has("change"))
-    throw Error(ExitCode::BadInput, "pass manage: parameter `change_turnover` needs the input `change`",
-                "wire `change` to eye-paths, or set change_turnover to 0");
 }
 
 FOVEA_PASS(Manage);

@@ -18,6 +18,7 @@ layout(push_constant) uniform Constants {
   uint placement;        // parameters of these names
   uint densityConstant64ths;  // CONST
   uint reuse;
+  uint randomShare1024ths;    // of the VPLs that `random` reuses; 0: as many as `linear`
   uint order;
   uint maxDensity;
   uint seed;

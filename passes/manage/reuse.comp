@@ -17,6 +17,13 @@ bool failed(uint slot) {
   return (slotRecords.list[slot].flags & kAlive) != 0u && sources.list[slot] != kKept;
 }
 
+// VPLs that Eq. 1 reuses, or that `random` does.
+uint reusedByRule() {
+  if (reuse == kReuseRandom && randomShare1024ths > 0u) return (state.alive * randomShare1024ths + 512u) >> 10;
+  uint spared = state.alive - min(state.alive, mostFailing());
+  return max(state.accepted, spared);
+}
+
 void main() {
   uint lane = gl_LocalInvocationIndex;
   Run run = runOf(slots);
@@ -27,8 +34,7 @@ void main() {
     if (eligible(slot)) lists.entries[place++] = uvec2(slotRecords.list[slot].key, slot);
   groupBarrier();
 
-  uint spared = state.alive - min(state.alive, mostFailing());
-  uint reused = min(max(state.accepted, spared), listLimit), first = oldList();
+  uint reused = min(reusedByRule(), listLimit), first = oldList();
   reused -= min(reused, contested);
   reused = min(reused, state.alive - min(state.alive, outdated()));
   if (reused < total) first = radixSort(first, slots, total, 24u);

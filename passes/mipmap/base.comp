@@ -30,7 +30,7 @@ Cell voxelTowards(uint voxel, int face, float faceArea) {
   for (uint i = 0u; i < 2u; ++i) {
     int side = int(2u * (voxel - 1u) + i);
     VoxelSide surface = loadSide(uint(side));
-    float coverage = surface.area / faceArea;
+    float coverage = sendingArea(surface) / faceArea;
 #if DIRECTIONAL
     float along = face < 2 ? surface.normal.x : face < 4 ? surface.normal.y : surface.normal.z;
     coverage *= max((face & 1) == 0 ? along : -along, 0.0);

@@ -83,16 +83,21 @@ class Mipmap : public Pass {
  private:
   static constexpr int64_t kAllMips = 32;  // more than any size needs
 
+  struct Before {
+    scene::MoverBoxes movers;              // bounds of the moving objects in the previous frame
+    const scene::GpuScene* gpu = nullptr;  // scene of the previous frame
+  };
+
   void recordBase(RecordContext& ctx, uint32_t size) {
     Commands base = ctx.step("base");
     base.mip("mipsColor", "mips.color", 0);
     if (weighted_) base.mip("mipsWeight", "mips.weight", 0);
     if (keeps_) {
-      const bool all = ctx.firstFrame() || gpu_ != ctx.frame().gpu;
+      auto& before = ctx.memory<Before>();
+      const bool all = before.gpu != ctx.frame().gpu;
       const scene::MoverBoxes now = scene::moverBoxes(ctx.frame());
-      base.constant("movers", scene::around(now, before_).corners).constant("all_", uint32_t(all));
-      before_ = now;
-      gpu_ = ctx.frame().gpu;
+      base.constant("movers", scene::around(now, before.movers).corners).constant("all_", uint32_t(all));
+      before = {now, ctx.frame().gpu};
     }
     base.dispatchThreads(size, size, size);
   }
@@ -101,8 +106,6 @@ class Mipmap : public Pass {
   static SizeExpr keeps() { return wired("changed") && !weighted(); }  // the weights differ in every frame
 
   bool weighted_ = false, keeps_ = false;
-  scene::MoverBoxes before_;              // bounds of the moving objects in the previous frame
-  const scene::GpuScene* gpu_ = nullptr;  // scene of the previous frame
 };
 
 FOVEA_PASS(Mipmap);

@@ -2,10 +2,10 @@
 
 #include <glm/glm.hpp>
 
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/sizes.h"
 
 namespace fovea::passes {
 namespace {
@@ -31,20 +31,9 @@ void declarePorts(PassDeclaration& d) {
       "of the light that discs leave out there, as that of pass near-field");
   d.counter("rays", kRaysDoc);
   d.counter("pixels", "pixels that got rays");
-}
-
-void checkPorts(const PassContext& ctx, glm::uvec2 size) {
-  const auto text = [](uint32_t width, uint32_t height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-  };
-  for (const char* port : {"shade.mask", "near_field"}) {
-    const VkExtent3D extent = ctx.extent(port);
-    if (size == glm::uvec2(extent.width, extent.height)) continue;
-    throw Error(ExitCode::BadInput,
-                std::string("`") + port + "` has " + text(extent.width, extent.height) +
-                    " pixels, its view " + text(size.x, size.y),
+  for (const char* port : {"shade.mask", "near_field"})
+    requireSize(d, port, viewWidth(), viewHeight(), "its view",
                 "wire images of the view that the pass looks through");
-  }
 }
 
 constexpr Usage kReadWrite = Usage::StorageRead | Usage::StorageWrite;
@@ -68,11 +57,6 @@ class NearFieldPixels : public Pass {
     d.step("near-field-pixels/trace.comp").define("RAY_PASSAGE", fullMaterials());
     d.step("near-field-pixels/write.comp").indirect("dispatch");
     return d;
-  }
-
-  void prepare(PrepareContext& ctx) override {
-    const VkExtent3D view = ctx.extent("traced");
-    checkPorts(ctx, {view.width, view.height});
   }
 
   void record(RecordContext& ctx) override {

@@ -1,14 +1,11 @@
 // Light from nearby surfaces, which VPLs shaded as discs leave out.
-#include <bit>
-
-#include "fovea/error.h"
+#include "shaders/records/near_field.h"
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
 #include "passes/sizes.h"
 #include "shaders/records/gather_cache.h"
-#include "shaders/records/near_field.h"
 
 namespace fovea::passes {
 namespace {
@@ -36,7 +33,7 @@ void declarePorts(PassDeclaration& d) {
            "with full materials, rgb: at the same pixels, the mean of the same light under the lobe of the "
            "surface, W/(sr m^2); a: as in `samples`; otherwise one undefined texel");
   d.output("spread", spreadBuffer(), write, "x: least area of a VPL's disc, m^2, for pass vpl-intensity");
-  d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, as inside it, 4 or 8");
+  d.parameter("spacing", integer(4, {2, 4, 8}), "spacing of the rays outside the fovea; inside it is 2");
   d.parameter("vpls", integer(1000, 1, 1 << 20), "number of VPLs");
   d.parameter("share", real(50, 0.01, 1e6),
               "total area of all discs, in squares of the mean distance between visible surfaces and the "
@@ -64,19 +61,8 @@ void declarePorts(PassDeclaration& d) {
   d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
   d.counter("gathered",
             "those of them at whose ends light of further bounces was gathered rather than known");
-}
-
-void checkPorts(const PassContext& ctx) {
-  const auto spacing = uint32_t(ctx.parameters().integer("spacing"));
-  if (!std::has_single_bit(spacing))
-    throw Error(ExitCode::BadInput, "spacing " + std::to_string(spacing) + " is not a power of two",
-                "use 2, 4 or 8");
-  if (ctx.has("gbuffer")) checkMaterials(ctx);
-}
-
-void checkGBufferSize(const PassContext& ctx, glm::uvec2 view) {
-  if (ctx.has("gbuffer"))
-    checkSize(ctx, "gbuffer.normal", view, "its view",
+  requireMaterials(d);
+  requireSize(d, "gbuffer.normal", viewWidth(), viewHeight(), "its view",
               "wire the G-buffer of the view that the pass looks through");
 }
 
@@ -126,10 +112,7 @@ class NearField : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkPorts(ctx); }
-
   void record(RecordContext& ctx) override {
-    checkGBufferSize(ctx, ctx.view().size);
     const std::string& light = ctx.parameters().text("light");
     if (light == "none") {
       ctx.clear("samples", {});

@@ -43,6 +43,13 @@ class PathTrace : public Pass {
         "whether each frame uses new random numbers; if false, all frames use the same ones (static noise)");
     d.parameter("threads", integer(0, 0, 1024),
                 "number of threads, 0 for one per core; the image does not depend on it");
+    d.parameter(
+        "parts", integer(1, 1, 1 << 14),
+        "of so many parts of the image, each every `parts`-th row, one is traced and the others stay black; "
+        "the rows of all parts together are those of the whole image to the bit");
+    d.parameter("part", integer(0, 0, (1 << 14) - 1), "which part, from 0; less than `parts`");
+    d.require(atMost(parameter("part") + 1, parameter("parts")), "`part` is not less than `parts`",
+              "the parts are counted from 0");
     d.counter("paths", "paths traced");
     d.counter("rays", "rays traced");
     d.counter("samples", "samples per pixel: `spp`, or fewer if the run was stopped");
@@ -56,6 +63,8 @@ class PathTrace : public Pass {
     settings.depth = uint32_t(p.integer("depth"));
     settings.samples = uint32_t(p.integer("spp"));
     settings.threads = uint32_t(p.integer("threads"));
+    settings.parts = uint32_t(p.integer("parts"));
+    settings.part = uint32_t(p.integer("part"));
     settings.independent = p.text("sampling") == "independent";
     settings.box = p.text("filter") == "box";
     settings.full = p.text("view.materials") == "full";

@@ -46,6 +46,10 @@ class Tracer {
   void tracePixel(uint32_t x, uint32_t y, uint32_t begin, uint32_t end, uint64_t& rays);
   void addSample(size_t pixel, uint32_t s, glm::vec3 direct, glm::vec3 indirect);
   void report();
+  uint32_t nextRow() { return nextRow_.fetch_add(settings_.parts); }
+  uint32_t rowsOfPart() const {
+    return (view_.size.y + settings_.parts - 1 - settings_.part) / settings_.parts;
+  }
   uint32_t samplesInSlot(uint32_t slot, uint32_t samples) const {
     return (samples + slotCount_ - 1 - slot) / slotCount_;
   }
@@ -92,14 +96,14 @@ PathTraceStatistics Tracer<Integrator>::run() {
   }
   PathTraceStatistics statistics{paths_, rays_, 0};
   for (const uint32_t n : film_.rowSamples) statistics.samples += double(n);
-  statistics.samples /= double(view_.size.y);
+  statistics.samples /= std::max(double(rowsOfPart()), 1.0);
   return statistics;
 }
 
 // Brings every pixel to `end` samples.
 template <class Integrator>
 void Tracer<Integrator>::round(uint32_t end) {
-  nextRow_ = 0;
+  nextRow_ = settings_.part;
   std::vector<std::jthread> helpers;
   for (uint32_t i = 1; i < std::min(threads_, view_.size.y); ++i)
     helpers.emplace_back([this, end] { work(false, end); });
@@ -108,7 +112,7 @@ void Tracer<Integrator>::round(uint32_t end) {
 
 template <class Integrator>
 void Tracer<Integrator>::work(bool reports, uint32_t end) {
-  for (uint32_t y = nextRow_++; y < view_.size.y; y = nextRow_++) {
+  for (uint32_t y = nextRow(); y < view_.size.y; y = nextRow()) {
     if (mayStop_ && stop_) return;
     traceRow(y, end);
     if (reports) report();
@@ -120,7 +124,7 @@ void Tracer<Integrator>::report() {
   const auto now = std::chrono::steady_clock::now();
   if (!settings_.progress || stop_ || now - lastReport_ < kReportEvery) return;
   lastReport_ = now;
-  const double total = double(samples_) * view_.size.x * view_.size.y;
+  const double total = double(samples_) * view_.size.x * rowsOfPart();
   if (!settings_.progress(double(paths_) / total)) stop_ = true;
 }
 
@@ -214,7 +218,8 @@ void Tracer<Integrator>::write(const PathTraceImages& images) const {
     if (!image.empty()) image[pixel] = glm::vec4(glm::vec3(value), 1);
   };
   for (size_t pixel = 0; pixel < film_.direct.size(); ++pixel) {
-    const uint32_t samples = film_.rowSamples[pixel / view_.size.x];
+    const uint32_t samples =
+        std::max(film_.rowSamples[pixel / view_.size.x], 2u);  // none: another part's row
     const glm::dvec3 direct = film_.direct[pixel] / double(samples),
                      indirect = film_.indirect[pixel] / double(samples);
     put(images.radiance, pixel, unit * (direct + indirect));

@@ -14,7 +14,8 @@ namespace fovea::path_trace {
 struct PathTraceSettings {
   // Edges of the longest path: 1 is emission, 2 direct light, each further edge one indirect bounce.
   uint32_t depth = 4;
-  uint32_t samples = 2000;  // per pixel, at least 2
+  uint32_t parts = 1, part = 0;  // only every parts-th row is traced, from row `part` on
+  uint32_t samples = 2000;       // per pixel, at least 2
   uint32_t seed = 0;
   uint32_t threads = 0;      // 0 uses one per core
   bool independent = false;  // independent random numbers; if false, Owen-scrambled Sobol' points

@@ -1,5 +1,4 @@
 // Rays of probes, and what they find.
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
@@ -44,16 +43,9 @@ void declarePorts(PassDeclaration& d) {
   d.counter("rays", kRaysDoc);
   d.counter("probes", "probes in the grid");
   d.counter("inside", "probes inside geometry, which light nothing");
-}
-
-void checkPorts(const PassContext& ctx) {
-  const uint64_t known = ctx.count("probes.states"),
-                 probes = ctx.count("rays.hits") / ctx.count("rays.directions");
-  if (known == probes) return;
-  throw Error(
-      ExitCode::BadInput,
-      "`probes` knows " + std::to_string(known) + " probes, the grid has room for " + std::to_string(probes),
-      "wire pass probe-blend of the same rays, in the previous frame");
+  d.require(same(countOf("probes.states"), side * side * side),
+            "`probes` is of another number of probes than the grid has room for",
+            "wire pass probe-blend of the same rays, in the previous frame");
 }
 
 class ProbeRays : public Pass {
@@ -73,8 +65,6 @@ class ProbeRays : public Pass {
         .threads(parameter("rays"), probes);
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override { checkPorts(ctx); }
 };
 
 FOVEA_PASS(ProbeRays);

@@ -1,6 +1,5 @@
 // Radiosity of the VPLs: direct light plus one bounce gathered with cones (Eq. 3 of the paper; passes/vpls.md,
 // radiance).
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 
@@ -31,13 +30,9 @@ class Radiance : public Pass {
         .define("CONES", !is("terms", "direct"))
         .constant("count", countOf("vpls"))
         .over("vpls");
+    d.require(is("terms", "direct") || wired("mips"), "the cones need the input `mips`",
+              "wire `mips` to mipmap, or set terms to `direct`");
     return d;
-  }
-
-  void prepare(PrepareContext& ctx) override {
-    if (ctx.parameters().text("terms") != "direct" && !ctx.has("mips"))
-      throw Error(ExitCode::BadInput, "the cones need the input `mips`",
-                  "wire `mips` to mipmap, or set terms to `direct`");
   }
 };
 

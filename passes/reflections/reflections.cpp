@@ -1,5 +1,4 @@
 // What smooth surfaces reflect.
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
@@ -32,13 +31,10 @@ void declarePorts(PassDeclaration& d) {
   d.counter("mirrors", "pixels from which rays leave");
   d.counter("rays", kRaysDoc);
   d.counter("gathered", "rays at whose ends light of further bounces was gathered rather than known");
-}
-
-void checkPorts(const PassContext& ctx, glm::uvec2 half) {
-  if (!fullMaterials(ctx.parameters()))
-    throw Error(ExitCode::BadInput, "materials are `diffuse`, and diffuse surfaces have no narrow lobe",
-                "leave the pass out, or make the materials of the view `full`");
-  checkSize(ctx, "mirrors", half, "half its view", "wire mirrors of the view that the pass looks through");
+  d.require(fullMaterials(), "materials are `diffuse`, and diffuse surfaces have no narrow lobe",
+            "leave the pass out, or make the materials of the view `full`");
+  requireSize(d, "mirrors", ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2), "half its view",
+              "wire mirrors of the view that the pass looks through");
 }
 
 constexpr Usage kReadWrite = Usage::StorageRead | Usage::StorageWrite;
@@ -62,11 +58,6 @@ class Reflections : public Pass {
     d.step("reflections/merge.comp").define("RAY_PASSAGE", 1).threads(scene::kGatherCells);
     d.step("reflections/filter.comp").over("samples");
     return d;
-  }
-
-  void prepare(PrepareContext& ctx) override {
-    const VkExtent3D half = ctx.extent("traced");
-    checkPorts(ctx, {half.width, half.height});
   }
 
   void record(RecordContext& ctx) override {

@@ -68,13 +68,6 @@ class Reproject : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override {
-    const int64_t n = ctx.parameters().integer("interleave");
-    if ((n & (n - 1)) != 0)
-      throw Error(ExitCode::BadInput, "interleave " + std::to_string(n) + " is not a power of two",
-                  "use 1, 2, 4 or 8, the same as for the shading");
-  }
-
  private:
   static void addSteps(PassDeclaration& d) {
     const auto leastCos = [](const RecordContext& ctx) {
@@ -105,7 +98,7 @@ class Reproject : public Pass {
 
   static void addParameters(PassDeclaration& d) {
     d.parameter("source_view", text("left"), "view in which the source was rendered");
-    d.parameter("interleave", integer(4, 1, 8),
+    d.parameter("interleave", integer(4, {1, 2, 4, 8}),
                 "width n of a block, as for the shading: a pixel without a source causes its whole block of "
                 "n x n pixels to be shaded; 1, 2, 4 or 8");
     d.parameter(

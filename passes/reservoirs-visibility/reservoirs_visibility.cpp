@@ -1,8 +1,8 @@
 // Visibility of shared samples with rays on the device.
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/sizes.h"
 #include "shaders/records/reservoir.h"
 
 namespace fovea::passes {
@@ -33,22 +33,16 @@ void declarePorts(PassDeclaration& d) {
            "sees that of the pixel");
   d.counter("rays", "rays traced towards samples");
   d.counter("hidden", "rays that did not reach their sample");
-}
-
-void checkPorts(const PassContext& ctx) {
-  const VkExtent3D size = ctx.extent("gbuffer.distance"), sources = ctx.extent("sources"),
-                   moved = ctx.has("moved") ? ctx.extent("moved.position") : size;
-  const uint64_t pixels = uint64_t(size.width) * size.height;
-  if (moved.width == size.width && moved.height == size.height && sources.height == size.height &&
-      sources.width % size.width == 0 && sources.width <= kMostSources * size.width &&
-      ctx.count("own") == pixels && ctx.count("others") == pixels)
-    return;
-  const auto text = [](VkExtent3D e) { return std::to_string(e.width) + "x" + std::to_string(e.height); };
-  throw Error(ExitCode::BadInput,
-              "`gbuffer` has " + text(size) + " pixels, `moved` " + text(moved) + " and `sources` " +
-                  text(sources) + ", with " + std::to_string(ctx.count("own")) + " and " +
-                  std::to_string(ctx.count("others")) + " reservoirs",
-              "wire what belongs to one view, with at most 16 sources for each pixel");
+  requireSameSize(d, "moved.position", "gbuffer.distance");
+  const SizeExpr width = widthOf("gbuffer.distance"), height = heightOf("gbuffer.distance"),
+                 each = ceilDiv(widthOf("sources"), width);
+  d.require(same(heightOf("sources"), height) && same(each * width, widthOf("sources")) &&
+                atMost(each, int(kMostSources)),
+            "`sources` does not have the same number of texels, at most 16, for each pixel of `gbuffer`",
+            "wire what belongs to one view");
+  d.require(same(countOf("own"), width * height) && same(countOf("others"), width * height),
+            "`own` and `others` do not have a reservoir for each pixel of `gbuffer`",
+            "wire what belongs to one view");
 }
 
 class ReservoirsVisibility : public Pass {
@@ -64,8 +58,6 @@ class ReservoirsVisibility : public Pass {
         .over("seen");
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override { checkPorts(ctx); }
 };
 
 FOVEA_PASS(ReservoirsVisibility);

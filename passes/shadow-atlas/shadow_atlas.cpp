@@ -64,16 +64,19 @@ class ShadowAtlas : public Pass {
   Ranges ranges(RecordContext& ctx);
   static uint32_t groups(const std::vector<Range>& list);
   static uint32_t rounds(uint32_t slots) { return (slots + kRound - 1) / kRound; }
-  void simplifyScene(RecordContext& ctx);
+  struct Simplified {
+    bool uploaded = false;
+    uint32_t triangles = 0;
+    float error = 0;
+  };
+  Simplified simplifyScene(RecordContext& ctx);
   void chooseSlots(RecordContext& ctx, const Ranges& triangles);
   void recordStep(RecordContext& ctx, uint32_t round, uint32_t step, const Range& range);
 
   Kernel changed_, choose_, clear_, compose_;
-  bool hasState_ = false, staticMaps_ = false, simplify_ = false, uploaded_ = false;
+  bool hasState_ = false, staticMaps_ = false, simplify_ = false;
   // `still_` is the part of exact_ for static geometry, where that has maps of its own.
   Kernels exact_, still_, simplified_;
-  uint32_t simplifiedTriangles_ = 0;
-  float simplifiedError_ = 0;
   gpu::Buffer staging_;  // holds the simplified mesh until its copy has run
 };
 
@@ -208,13 +211,11 @@ void ShadowAtlas::prepare(PrepareContext& ctx) {
 }
 
 // Runs once per scene; the copy is part of the first frame's commands.
-void ShadowAtlas::simplifyScene(RecordContext& ctx) {
+ShadowAtlas::Simplified ShadowAtlas::simplifyScene(RecordContext& ctx) {
   const scene::SimplifiedMesh mesh = scene::simplify(*ctx.frame().scene, *ctx.frame().geometry,
                                                      float(ctx.parameters().real("simplify_ratio")));
-  simplifiedTriangles_ = mesh.triangles();
-  simplifiedError_ = mesh.error;
-  uploaded_ = true;
-  if (mesh.corners.empty()) return;
+  const Simplified simplified{true, mesh.triangles(), mesh.error};
+  if (mesh.corners.empty()) return simplified;
   const uint64_t bytes = mesh.corners.size() * sizeof(glm::vec4);
   staging_ = gpu::Buffer(
       ctx.device(), {"simplified mesh", bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryKind::Upload});
@@ -222,6 +223,7 @@ void ShadowAtlas::simplifyScene(RecordContext& ctx) {
   const VkBufferCopy copy{0, 0, bytes};
   vkCmdCopyBuffer(ctx.cmd(), staging_.handle(), ctx.buffer("simplified").handle(), 1, &copy);
   ctx.barrier();  // this copy is no command that the framework knows
+  return simplified;
 }
 
 ShadowAtlas::Ranges ShadowAtlas::ranges(RecordContext& ctx) {
@@ -234,8 +236,9 @@ ShadowAtlas::Ranges ShadowAtlas::ranges(RecordContext& ctx) {
       to.push_back({&kernels, first, std::min(end - first, kRangeTriangles), epsilon});
   };
   const scene::Geometry::LightTriangles light = geometry.light();
+  const auto& mesh = ctx.memory<Simplified>();
   if (simplify_)
-    add(list.all, simplified_, 0, simplifiedTriangles_, own + simplifiedError_);
+    add(list.all, simplified_, 0, mesh.triangles, own + mesh.error);
   else if (staticMaps_)
     add(list.all, still_, light.first, light.firstMoving, own);
   add(staticMaps_ ? list.overlay : list.all, exact_,
@@ -313,7 +316,8 @@ void ShadowAtlas::chooseSlots(RecordContext& ctx, const Ranges& triangles) {
 }
 
 void ShadowAtlas::record(RecordContext& ctx) {
-  if (simplify_ && !uploaded_) simplifyScene(ctx);
+  auto& mesh = ctx.memory<Simplified>();
+  if (simplify_ && !mesh.uploaded) mesh = simplifyScene(ctx);
   if (ctx.firstFrame()) {
     VkClearColorValue nothing{};
     nothing.uint32[0] = scene::kParaboloidEmpty;

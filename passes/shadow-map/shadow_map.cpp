@@ -58,25 +58,29 @@ class ShadowMap : public Pass {
     const scene::Geometry& geometry = *ctx.frame().geometry;
     const uint32_t all = uint32_t(geometry.triangles.size()), fixed = std::min(geometry.staticTriangles, all);
     const bool moves = fixed < all;
-    if (ctx.firstFrame() || !isDrawn(ctx.frame()))
-      draw(ctx, moves ? "still" : "maps.depth", Attachment::Load::Clear, 0, fixed);
-    lights_ = ctx.frame().lights;
-    gpu_ = ctx.frame().gpu;
+    auto& drawn = ctx.memory<Drawn>();
+    if (!drawn.is(ctx.frame())) draw(ctx, moves ? "still" : "maps.depth", Attachment::Load::Clear, 0, fixed);
+    drawn = {ctx.frame().lights, ctx.frame().gpu};
     if (!moves) return;
     ctx.copy("still", "maps.depth");
     draw(ctx, "maps.depth", Attachment::Load::Keep, fixed, all);
   }
 
  private:
-  // Whether static geometry has been drawn for these lights.
-  bool isDrawn(const scene::Frame& frame) const {
-    return gpu_ == frame.gpu &&
-           std::equal(lights_.begin(), lights_.end(), frame.lights.begin(), frame.lights.end(),
-                      [](const scene::Light& a, const scene::Light& b) {
-                        return a.type == b.type && a.position == b.position && a.direction == b.direction &&
-                               a.range == b.range && a.outerConeAngle == b.outerConeAngle;
-                      });
-  }
+  // Of what static geometry has been drawn.
+  struct Drawn {
+    std::vector<scene::Light> lights;
+    const scene::GpuScene* gpu = nullptr;
+
+    bool is(const scene::Frame& frame) const {
+      return gpu == frame.gpu &&
+             std::equal(lights.begin(), lights.end(), frame.lights.begin(), frame.lights.end(),
+                        [](const scene::Light& a, const scene::Light& b) {
+                          return a.type == b.type && a.position == b.position && a.direction == b.direction &&
+                                 a.range == b.range && a.outerConeAngle == b.outerConeAngle;
+                        });
+    }
+  };
 
   // Draws triangles [first, end) into all layers.
   void draw(RecordContext& ctx, const char* target, Attachment::Load load, uint32_t first,
@@ -101,8 +105,6 @@ class ShadowMap : public Pass {
         .drawTriangles(ctx.frame().gpu->indices().handle(), first, end - first, layers);
   }
 
-  std::vector<scene::Light> lights_;      // lights for which `still` is drawn
-  const scene::GpuScene* gpu_ = nullptr;  // scene of which `still` is drawn
   Kernel draw_[std::size(scene::kDrawKinds)];
 };
 

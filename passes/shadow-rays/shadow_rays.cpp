@@ -1,12 +1,10 @@
 // Sharp shadow edges: rays on the device decide where shadow maps cannot.
-#include <string>
-
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/acuity.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/sizes.h"
 
 namespace fovea::passes {
 namespace {
@@ -31,21 +29,14 @@ class ShadowRays : public Pass {
         d,
         "1 traces all pixels in doubt; 2 leaves out those outside the fovea where the eye resolves "
         "no more than every second pixel");
+    requireMaterials(d);
+    requireSameSize(d, "direct", "gbuffer.distance");
     d.counter("pixels", "pixels that were in doubt and traced");
     d.counter("rays", "lights towards which such pixels have traced");
     d.step("shadow-rays/shadow_rays.comp")
         .define("GLOSS", fullMaterials())
         .define("RAY_PASSAGE", fullMaterials());
     return d;
-  }
-
-  void prepare(PrepareContext& ctx) override {
-    checkMaterials(ctx);
-    const VkExtent3D direct = ctx.extent("direct"), seen = ctx.extent("gbuffer.distance");
-    if (direct.width == seen.width && direct.height == seen.height) return;
-    const auto text = [](VkExtent3D e) { return std::to_string(e.width) + "x" + std::to_string(e.height); };
-    throw Error(ExitCode::BadInput, "`direct` has " + text(direct) + " pixels, its G-buffer " + text(seen),
-                "wire direct light of the view that the G-buffer shows");
   }
 
   void record(RecordContext& ctx) override {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
@@ -96,20 +95,14 @@ class TemporalAccumulation : public Pass {
           .define("CHANGES", wired("change"))
           .tiles("tiles");
     };
+    d.require(same(wired("gloss"), wired("gloss_history")),
+              "of `gloss` and `gloss_history` only one is wired",
+              "wire `gloss_mean` of the previous frame to `gloss_history`, or neither of them");
+    requireSameSize(d, "gloss", "samples");
+    requireSize(d, "gloss_history", width, height, "`mean`", "wire `gloss_mean` of the previous frame");
     accumulate("mean", {"mean"}).when(!gloss).define("GLOSS", 0);
     accumulate("mean with gloss", {"mean", "gloss_mean"}).when(gloss).define("GLOSS", 1);
     return d;
-  }
-
-  void prepare(PrepareContext& ctx) override {
-    if (ctx.has("gloss") != ctx.has("gloss_history"))
-      throw Error(ExitCode::BadInput, "of `gloss` and `gloss_history` only one is wired",
-                  "wire `gloss_mean` of the previous frame to `gloss_history`, or neither of them");
-    if (!ctx.has("gloss")) return;
-    checkSameSize(ctx, "gloss", "samples");
-    const VkExtent3D mean = ctx.extent("mean");
-    checkSize(ctx, "gloss_history", {mean.width, mean.height}, "`mean`",
-              "wire `gloss_mean` of the previous frame");
   }
 
   void record(RecordContext& ctx) override {

@@ -1,5 +1,7 @@
 // Debug view: the voxels as the eye sees them.
-#include "fovea/error.h"
+#include <string>
+#include <utility>
+
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 
@@ -29,15 +31,11 @@ class ViewVoxels : public Pass {
         .define("WEIGHT", is("show", "weight"))
         .define("NORMAL", is("show", "normal"))
         .over("image");
+    for (const auto& [show, input] : {std::pair("radiance", "radiance"), std::pair("weight", "weights")})
+      d.require(!is("show", show) || wired(input),
+                "show `" + std::string(show) + "` needs the input `" + input + "`",
+                "wire `" + std::string(input) + "`, or show something else");
     return d;
-  }
-
-  void prepare(PrepareContext& ctx) override {
-    const std::string& show = ctx.parameters().text("show");
-    const char* wanted = show == "radiance" ? "radiance" : show == "weight" ? "weights" : nullptr;
-    if (wanted && !ctx.has(wanted))
-      throw Error(ExitCode::BadInput, "show `" + show + "` needs the input `" + wanted + "`",
-                  std::string("wire `") + wanted + "` or show something else");
   }
 };
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <glm/glm.hpp>
 
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 
@@ -62,16 +61,10 @@ class ViewVpls : public Pass {
                     return float(1.0 / (range > 0 ? range : p.text("show") == "age" ? 60.0 : 1.0));
                   })
         .over("image");
+    d.require(!is("show", "luminance") || wired("vpls"), "show `luminance` needs the input `vpls`",
+              "wire the VPLs that the shading reads, or show something else");
+    d.require(atMost(countOf("state"), int(kMostSlots)), "at most 65536 VPLs can be drawn", "use fewer");
     return d;
-  }
-
-  void prepare(PrepareContext& ctx) override {
-    if (ctx.parameters().text("show") == "luminance" && !ctx.has("vpls"))
-      throw Error(ExitCode::BadInput, "show `luminance` needs the input `vpls`",
-                  "wire the VPLs that the shading reads, or show something else");
-    if (ctx.count("state") > kMostSlots)
-      throw Error(ExitCode::BadInput,
-                  std::to_string(ctx.count("state")) + " VPLs; at most 65536 can be drawn", "use fewer");
   }
 };
 

@@ -18,7 +18,32 @@ layout(push_constant) uniform Constants {
 };
 
 float sumAt(uint word) { return float(sums.words[word + 1u]) * 4294967296.0 + float(sums.words[word]); }
+// The difference of two sums, exact although they may be nearly equal.
+float differenceAt(uint word, uint less) {
+  uint borrow, low = usubBorrow(sums.words[word], sums.words[less], borrow);
+  return float(sums.words[word + 1u] - sums.words[less + 1u] - borrow) * 4294967296.0 + float(low);
+}
 vec3 sums3At(uint word) { return vec3(sumAt(word), sumAt(word + 2u), sumAt(word + 4u)); }
+
+// The area of a side that rays can hit (voxels/voxel_trace.glsl): the piece of its plane within the cell, but at most a
+// disc of kSideRadii times the radius of its surface. Position, area and result are in cells.
+float reachOf(vec3 position, vec3 normal, float area) {
+  const float kSlices = 8.0, kRounding = 0.01;
+  vec3 size = abs(normal);
+  bool alongX = size.x >= size.y && size.x >= size.z, alongY = !alongX && size.y >= size.z;
+  vec3 n = alongX ? normal.yzx : alongY ? normal.zxy : normal;
+  vec3 p = alongX ? position.yzx : alongY ? position.zxy : position;
+  vec2 slope = -n.xy / n.z;
+  if (abs(slope.x) > abs(slope.y)) slope = slope.yx, p.xy = p.yx;
+  slope.y = slope.y < 0.0 ? min(slope.y, -0.01) : max(slope.y, 0.01);  // flatter planes would magnify rounding
+  float within = 0.0;  // share of the face over which the plane lies in the cell
+  for (float slice = 0.5; slice < kSlices; slice += 1.0) {
+    float height = p.z + slope.x * (slice / kSlices - p.x) - slope.y * p.y;
+    vec2 ends = clamp((vec2(-kRounding, 1.0 + kRounding) - height) / slope.y, 0.0, 1.0);
+    within += abs(ends.y - ends.x) / kSlices;
+  }
+  return min(within / abs(n.z), kSideRadii * kSideRadii * area);
+}
 
 void main() {
   uint entry = groupIndex() * 64u + gl_LocalInvocationIndex, word = entry * kSumWords;
@@ -38,15 +63,18 @@ void main() {
   // The normals of one side can cancel if three or more meet; any direction on that side will do.
   float len = length(normal);
   normal = len > 1e-3 ? normal / len : vec3(side == 0u ? 0.57735027 : -0.57735027);
-  // As seen along the axis of its side, the surface covers no more than a face of the cell, and what lies behind its
-  // emissive part does not dim it.
-  float face = 4294967296.0 / max(max(abs(normal.x), abs(normal.y)), abs(normal.z));
-  float emissive = (sumAt(word + 14u) - area) / (kEmissiveWeight - 1.0);
-  vec3 emission = sums3At(word + 8u) / max(emissive, min(area, face));
+  vec3 emission = vec3(0.0);
+  float emissionArea = 0.0;  // in units of area
+  float emissive = differenceAt(word + 14u, word) / (kEmissiveWeight - 1.0);
+  if (emissive > 0.0) {
+    float reach = 4294967296.0 * reachOf(sums3At(word + 16u) * inverseWeight, normal, area / 4294967296.0);
+    emissionArea = max(emissive, reach);
+    emission = sums3At(word + 8u) / emissionArea;
+  }
   float object = float(0xffffu - (sums.words[word + 28u] & 0xffffu));
   uint piece = sums.words[word + 29u], mask = (1u << kTriangleBits) - 1u;
   float triangle = piece == 0u ? 0.0 : float(mask - (piece & mask));  // below 2^24: exact
-  voxelsSurface.sides[2u * voxel + side] =
-      VoxelSide(position, area * (1.0 / 4294967296.0) * grid.cell * grid.cell, normal, object,
-                sums3At(word + 2u) * inverse, triangle, emission, 0.0);
+  float unit = grid.cell * grid.cell / 4294967296.0;
+  voxelsSurface.sides[2u * voxel + side] = VoxelSide(position, area * unit, normal, object, sums3At(word + 2u) * inverse,
+                                                     triangle, emission, emissionArea * unit);
 }

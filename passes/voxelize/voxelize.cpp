@@ -45,8 +45,6 @@ class Voxelize : public Pass {
   void recordAssignment(RecordContext& ctx, Phase phase);
   void recordSums(RecordContext& ctx, Phase phase, Triangles triangles, uint32_t first);
   void recordPhase(RecordContext& ctx, Phase phase, Triangles triangles);
-
-  bool voxelized_ = false;  // whether the static scene has been voxelised
 };
 
 PassDeclaration Voxelize::declaration() {
@@ -175,10 +173,11 @@ void Voxelize::recordPhase(RecordContext& ctx, Phase phase, Triangles triangles)
 void Voxelize::record(RecordContext& ctx) {
   const scene::Geometry::LightTriangles triangles = ctx.frame().geometry->light();
   const bool dynamic = triangles.firstMoving < triangles.end;
-  if (!voxelized_) {
+  bool& voxelized = ctx.memory<bool>();  // whether the static scene has been
+  if (!voxelized) {
     recordPhase(ctx, Static, {triangles.first, triangles.firstMoving - triangles.first});
     if (dynamic) ctx.fill("marks", 0);
-    voxelized_ = true;
+    voxelized = true;
   } else if (dynamic) {
     ctx.run("restore");
   }

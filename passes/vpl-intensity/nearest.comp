@@ -45,7 +45,7 @@ void main() {
       }
     }
   if (owner == kNoSide) return;  // no VPL competes
-  uint units = areaUnits(grid, side.area);
+  uint units = areaUnits(grid, sendingArea(side));
   ADD_WIDE(sums.list[owner].x, sums.list[owner].y, units);
   atomicAdd(counters.givenSides, 1u);
 }

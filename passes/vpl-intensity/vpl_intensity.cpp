@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <string>
 
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 #include "passes/clamp.h"
 #include "passes/regions.h"
+#include "passes/sizes.h"
 #include "passes/vpl-intensity/records.h"
 #include "shaders/records/eye_paths.h"
 
@@ -179,13 +179,6 @@ class IntensityConstant : public Pass {
 class IntensityArea : public Pass {
  public:
   static PassDeclaration declaration();
-  void prepare(PrepareContext& ctx) override {
-    if (ctx.count("vpls") <= kMostCompeting) return;
-    throw Error(ExitCode::BadInput,
-                "it takes at most " + std::to_string(kMostCompeting) + " VPLs, these are " +
-                    std::to_string(ctx.count("vpls")),
-                "use `vpl-intensity-pdf`, or fewer VPLs");
-  }
 };
 
 const char* const kNormalWeight =
@@ -205,6 +198,9 @@ PassDeclaration IntensityArea::declaration() {
       "among all VPLs");
   d.parameter("normal_weight", real(0.5, 0, 100), kNormalWeight);
   d.counter("given_sides", "sides assigned to a VPL");
+  d.require(atMost(countOf("vpls"), int(kMostCompeting)),
+            "it takes at most " + std::to_string(kMostCompeting) + " VPLs, and there are more",
+            "use `vpl-intensity-pdf`, or fewer VPLs");
   d.scratch("sites", buffer("VplSite", sizeof(intensity::VplSite), countOf("vpls")), kWriteThenTexels,
             "position and normal of the VPLs that compete for surface");
   const SizeExpr bricks = bricksAlong() * bricksAlong() * bricksAlong(),
@@ -233,7 +229,6 @@ PassDeclaration IntensityArea::declaration() {
 class IntensityImportanceArea : public Pass {
  public:
   static PassDeclaration declaration();
-  void prepare(PrepareContext& ctx) override;
 
  private:
   static void addSteps(PassDeclaration& d);
@@ -282,6 +277,16 @@ PassDeclaration IntensityImportanceArea::declaration() {
   d.scratch("sums", buffer("PathSum", sizeof(intensity::PathSum), countOf("vpls")),
             kReadWrite | Usage::TransferWrite,
             "paths and their light assigned to each VPL, as whole numbers");
+  requireMaps(d, "atlas", "vpls");
+  d.require(same(countOf("traced.starts"), parameter("points")),
+            "the paths that are wired to `traced` start from another number of points",
+            "give this pass and eye-paths the same number of `points`");
+  d.require(
+      !wired("spread") || (wired("traced") && is("kernel", "disc")),
+      "input `spread` says that other rays bring the light of what is near, but nothing takes it from these "
+      "VPLs' light",
+      "wire `traced` and choose kernel `disc`, or leave out `spread` and pass near-field, as "
+      "graphs/foveal_no_near_field.json does");
   addSteps(d);
   return d;
 }
@@ -318,29 +323,6 @@ void IntensityImportanceArea::addSteps(PassDeclaration& d) {
   inRows(stepOverVpls(d, "vpl-intensity/discs.comp").when(discs).define("NEAR", wired("spread")),
          countOf("vpls"));
   addFinish(d, true, traced, discs);
-}
-
-void IntensityImportanceArea::prepare(PrepareContext& ctx) {
-  const Parameters& p = ctx.parameters();
-  const VkExtent3D maps = ctx.extent("atlas");
-  const uint64_t mapCount = uint64_t(maps.width / std::max(maps.height, 1u)) * ctx.layers("atlas");
-  if (mapCount < ctx.count("vpls"))
-    throw Error(ExitCode::BadInput,
-                "the atlas holds " + std::to_string(mapCount) + " maps for " +
-                    std::to_string(ctx.count("vpls")) + " VPLs",
-                "wire the same VPLs to the atlas and to this pass");
-  if (ctx.has("traced") && ctx.count("traced.starts") != uint64_t(p.integer("points")))
-    throw Error(ExitCode::BadInput,
-                "its paths start from " + std::to_string(ctx.count("traced.starts")) + " points, it has " +
-                    std::to_string(p.integer("points")),
-                "give this pass and eye-paths the same number of `points`");
-  if (ctx.has("spread") && !(ctx.has("traced") && p.text("kernel") == "disc"))
-    throw Error(ExitCode::BadInput,
-                "input `spread` says that other rays bring the light "
-                "of what is "
-                "near, but nothing takes it from these VPLs' light",
-                "wire `traced` and choose kernel `disc`, or leave out `spread` and pass near-field, as "
-                "graphs/foveal_no_near_field.json does");
 }
 
 FOVEA_PASS(IntensityPdf);

@@ -31,8 +31,8 @@ struct VoxelSide {
   vec3 reflectance SHARED_ZERO;
   // For an object that deforms: the triangle with the largest piece in the side, counted from the first non-static one.
   float triangle SHARED_ZERO;
-  vec3 emission SHARED_ZERO;  // W/(sr m^2)
-  float unused1 SHARED_ZERO;
+  vec3 emission SHARED_ZERO;       // W/(sr m^2), averaged over emissionArea
+  float emissionArea SHARED_ZERO;  // m^2 where rays can hit the side; 0 without emission
 };
 SHARED_SIZE(VoxelSide, 64)
 SHARED_OFFSET(VoxelSide, emission, 48)

@@ -28,6 +28,9 @@ VoxelSide loadSide(uint side) {
   return VoxelSide(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.xyz, d.w);
 }
 
+// The area, m^2, from which a side sends light with the radiance that it has.
+float sendingArea(VoxelSide side) { return max(side.area, side.emissionArea); }
+
 // What meetsSide() returns.
 const uint kNotMet = 0u, kPassed = 1u, kMet = 2u;
 

@@ -160,14 +160,46 @@ TEST(Session, ImpossibleFramesAreRefused) {
 
 // The tone curve has no part in the radiance, whose history must not notice.
 TEST(Session, HistoryGoesOnWhenAParameterChanges) {
-  const scene::Scene scene = scene::builtin("cornellbox");
-  Session changed("ours", scene, options({kFew}, {"radiance", "image"})),
-      plain("ours", scene, options({kFew}, {"radiance", "image"}));
-  for (uint64_t i = 0; i < 6; ++i) {
-    if (i == 3) changed.set({"tonemap.exposure=3"});
-    const FrameResult a = changed.render(i), b = plain.render(i);
-    EXPECT_EQ(radiance(a), radiance(b)) << i;
-    EXPECT_EQ(a.outputs.at("image").bytes == b.outputs.at("image").bytes, i < 3) << i;
+  for (const scene::Scene& scene : {scene::builtin("cornellbox"), moving()}) {
+    Session changed("ours", scene, options({kFew}, {"radiance", "image"})),
+        plain("ours", scene, options({kFew}, {"radiance", "image"}));
+    for (uint64_t i = 0; i < 6; ++i) {
+      if (i == 3) changed.set({"tonemap.exposure=3"});
+      const FrameResult a = changed.render(i), b = plain.render(i);
+      EXPECT_EQ(radiance(a), radiance(b)) << i;
+      EXPECT_EQ(a.outputs.at("image").bytes == b.outputs.at("image").bytes, i < 3) << i;
+    }
+  }
+}
+
+// What a pass does once for a scene is not done again for a parameter of another one.
+TEST(Session, OnlyWhatDependsOnAParameterIsDoneAgain) {
+  for (const char* name : {"cornellbox", "cornellbox_moving"}) {
+    Diagnostics messages;
+    const scene::Scene scene = scene::load(name, messages);
+    Session session("ours", scene, options({kFew}));
+    const auto work = [&](uint64_t index) {
+      std::map<std::string, std::pair<CommandCounts, std::vector<std::string>>> passes;
+      for (const PassTiming& pass : session.render(index).passes) {
+        auto& [commands, steps] = passes[session.passName(pass.pass)];
+        commands = pass.commands;
+        for (const StepTiming& step : pass.steps) steps.push_back(step.name);
+      }
+      return passes;
+    };
+    const auto first = work(0);
+    work(1);
+    const auto usual = work(2);
+    EXPECT_NE(first.at("voxelize").second, usual.at("voxelize").second);
+    session.set({"deferred.clamp_distance=0.4"});
+    const auto after = work(3);
+    ASSERT_EQ(after.size(), usual.size());
+    for (const auto& [pass, done] : usual) {
+      EXPECT_EQ(after.at(pass).first, done.first) << name << ", " << pass;
+      EXPECT_THAT(after.at(pass).second, testing::ElementsAreArray(done.second)) << name << ", " << pass;
+    }
+    session.set({"voxelize.resolution=64"});
+    EXPECT_EQ(work(4).at("voxelize").second, first.at("voxelize").second);
   }
 }
 
@@ -183,10 +215,12 @@ TEST(Session, AWrongParameterChangesNothing) {
 // The context adds the name in the graph and the type, once.
 TEST(Session, ErrorsOfAPassBeginWithThePass) {
   const std::string text = messageOf(ExitCode::BadInput, [&] {
-    Session("ours", scene::builtin("cornellbox"), options({kFew, "deferred.interleave=3"}));
+    scene::Scene scene = scene::builtin("cornellbox");
+    SessionOptions both = options({kFew, "right.source_view=nowhere"});
+    Session("stereo", scene, both).render(0);
   });
-  EXPECT_THAT(text,
-              testing::StartsWith("error: pass `deferred` (deferred): interleave 3 is not a power of two"));
+  EXPECT_THAT(text, testing::StartsWith(
+                        "error: pass `right/reproject` (reproject): source_view `nowhere` is no view"));
   EXPECT_EQ(text.find("pass `", 8), std::string::npos) << text;
 }
 

@@ -233,7 +233,7 @@ TEST(DeferredMask, WrongWiringIsRefused) {
   const auto everything = [](int, int) { return true; };
   expectRefused([&](PassTest& t) { Mask(g, 4, everything).wire(t, g); }, "nothing is wired to `base`");
   expectRefused([&](PassTest& t) { Mask(g, 2, everything).wire(t, g), wireBase(t, g, base); },
-                "blocks of another size than 4 x 4");
+                "blocks of another size than `interleave` (shade.blocks.count is 64, ");
 }
 
 }  // namespace

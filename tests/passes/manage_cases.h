@@ -132,6 +132,7 @@ class Manager {
     test_->param("count", int(in.vpls.size())).param("max_density", int(settings.maxDensity));
     test_->param("density_constant", settings.densityConstant).param("cell", settings.cell);
     test_->param("placement", settings.placement.c_str()).param("light_floor", settings.lightFloor);
+    test_->param("random_share", settings.randomShare);
     test_->param("turnover", settings.turnover).param("saccade_turnover", settings.saccadeTurnover);
     if (settings.changeTurnover > 0) {
       test_->param("change_turnover", settings.changeTurnover);

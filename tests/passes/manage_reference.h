@@ -18,7 +18,7 @@ struct ManageSettings {
   uint32_t keep = 0, limit = 0, maxDensity = 0;
   double densityConstant = 1, cell = 1.0 / 48;
   std::string placement = "importance";
-  double lightFloor = 0.25, turnover = 1, changeTurnover = 0, saccadeTurnover = 0;
+  double lightFloor = 0.25, turnover = 1, changeTurnover = 0, saccadeTurnover = 0, randomShare = 0;
 };
 
 struct ManageInput {
@@ -133,6 +133,8 @@ class ManageReference {
     };
     const size_t alive = size_t(std::count(alive_.begin(), alive_.end(), true));
     accepted = uint32_t(std::max<size_t>(accepted, alive - std::min(alive, most)));
+    if (random && s_.randomShare > 0)
+      accepted = uint32_t(std::floor(double(alive) * std::round(s_.randomShare * 1024) / 1024 + 0.5));
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
       if (limited && !random) return key(a) < key(b);
       return random ? this->random(a, 1) < this->random(b, 1) : oldImportance(a) > oldImportance(b);

@@ -23,7 +23,8 @@ ManageSettings randomSettings(Dice& dice, uint32_t slots) {
 }
 
 // Random settings and random lists, followed by a few frames in which the list is fed back.
-void compareRandomCases(const char* reuse, uint32_t firstSeed) {
+void compareRandomCases(const char* reuse, uint32_t firstSeed,
+                        std::initializer_list<double> randomShares = {0.0}) {
   ManageOutput sum;  // to see that the cases exercise what they are for
   for (uint32_t seed = firstSeed; seed < firstSeed + 14; ++seed) {
     SCOPED_TRACE(testing::Message() << reuse << ", seed " << seed);
@@ -33,6 +34,7 @@ void compareRandomCases(const char* reuse, uint32_t firstSeed) {
     content.candidates = dice.any<uint32_t>({1, 3, 50, 200, 700, 700});
     ManageSettings settings = randomSettings(dice, content.slots);
     settings.reuse = reuse;
+    settings.randomShare = dice.any(randomShares);
     ManageInput in = randomInput(dice, content);
     Manager manager(settings, in, seed);
     for (uint32_t i = 0; i < 5; ++i) {
@@ -67,6 +69,9 @@ void compareRandomCases(const char* reuse, uint32_t firstSeed) {
 TEST(Manage, LinearEqualsTheSerialAlgorithm) { compareRandomCases("linear", 100); }
 TEST(Manage, CosineEqualsTheSerialAlgorithm) { compareRandomCases("cosine", 200); }
 TEST(Manage, RandomEqualsTheSerialAlgorithm) { compareRandomCases("random", 300); }
+TEST(Manage, ARandomShareEqualsTheSerialAlgorithm) {
+  compareRandomCases("random", 400, {0.001, 0.37, 0.5, 0.93, 1.0});
+}
 
 TEST(Manage, LightAndTurnoverEqualTheSerialAlgorithm) {
   Dice dice(50);
@@ -248,6 +253,16 @@ TEST(Manage, RandomReusesAsManyAsLinear) {
   const ManageOutput random = Manager(settings, in).run(in);
   EXPECT_EQ(linear.rejected, random.rejected);
   EXPECT_GT(linear.rejected, 20u);
+}
+
+TEST(Manage, ARandomHalfIsHalfOfTheVpls) {
+  Dice dice(1);
+  const ManageInput in = randomInput(dice, {300, 1, 0.9f, Importance::Fine, 0.0f});
+  ManageSettings settings;
+  settings.reuse = "random";
+  settings.randomShare = 0.5;
+  settings.placement = "light";  // where VPLs that are not reused have no second chance
+  EXPECT_EQ(Manager(settings, in).run(in).kept, 150u);
 }
 
 // A VPL stays in its slot as long as it lives, unchanged except for its importance, and no candidate is taken twice.

@@ -45,7 +45,8 @@ Cell voxelTowards(const VoxelScene& s, const std::vector<glm::vec4>& radiance,
   if (glm::any(glm::greaterThanEqual(cell, glm::ivec3(s.voxels.resolution)))) return sum;
   const uint32_t voxel = s.voxels.voxelAt(cell);
   for (uint32_t side = 2 * voxel - 2; voxel && side < 2 * voxel; ++side) {
-    double coverage = double(s.sides()[side].area) / (double(s.voxels.grid.cell) * s.voxels.grid.cell);
+    double coverage = double(std::max(s.sides()[side].area, s.sides()[side].emissionArea)) /
+                      (double(s.voxels.grid.cell) * s.voxels.grid.cell);
     if (directional)
       coverage *= std::max(0.0, glm::dot(glm::dvec3(s.sides()[side].normal), faceNormal(face)));
     sum = sum + coverage * Cell{glm::dvec4(glm::dvec3(radiance[side]), 1),

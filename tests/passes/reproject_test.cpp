@@ -489,7 +489,7 @@ TEST(Reproject, WrongParametersAreRefused) {
       EXPECT_NE(std::string(e.what()).find(why), std::string::npos) << e.what();
     }
   };
-  expectRefused([](PassTest& t) { t.param("interleave", 3); }, "power of two");
+  expectRefused([](PassTest& t) { t.param("interleave", 3); }, "one of 1, 2, 4, 8");
   expectRefused([](PassTest& t) { t.beforeFrame([](PassTest&, scene::Frame&) {}); }, "source_view `first`");
 }
 

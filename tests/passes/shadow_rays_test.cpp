@@ -175,7 +175,10 @@ TEST(ShadowRaysInputs, SizeIsThatOfTheGBuffer) {
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ExitCode::BadInput);
-    EXPECT_NE(std::string(e.what()).find("8x8 pixels, its G-buffer 80x60"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("(direct.width is 8, gbuffer.distance.width is 80, direct.height is "
+                                         "8, gbuffer.distance.height is 60)"),
+              std::string::npos)
+        << e.what();
   }
 }
 

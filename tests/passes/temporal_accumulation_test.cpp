@@ -407,8 +407,8 @@ TEST(TemporalAccumulation, GlossNeedsAHistoryAndItsSize) {
     glm::ivec2 gloss, history;
     const char* says;
   } cases[] = {{kSize / 2, {0, 0}, "only one is wired"},
-               {{1, 1}, kSize, "`gloss` has 1x1 pixels, `samples` has"},
-               {kSize / 2, {1, 1}, "`gloss_history` has 1x1 pixels, `mean` has"}};
+               {{1, 1}, kSize, "`gloss` is not of the size of `samples`"},
+               {kSize / 2, {1, 1}, "`gloss_history` is not of the size of `mean`"}};
   for (const auto& [gloss, glossHistory, says] : cases) {
     PassTest test("temporal-accumulation");
     test.view("materials", "full");

@@ -84,6 +84,8 @@ void expectClose(const VoxelSide& a, const VoxelSide& b, const VoxelArrays& v, s
   ASSERT_LT(glm::length(a.normal - b.normal), 1e-5f * rough) << side << " area " << b.area;
   ASSERT_LT(glm::length(a.reflectance - b.reflectance), 1e-5f * rough) << side;
   ASSERT_LT(glm::length(a.emission - b.emission), 1e-5f * rough * (1 + glm::length(b.emission))) << side;
+  // As rough as the averages, and at most 2.25 times the area of the side.
+  ASSERT_NEAR(a.emissionArea, b.emissionArea, 1e-5f * (b.emissionArea + 2.25e-3f * cell * cell)) << side;
   ASSERT_EQ(a.object, b.object) << side;
 }
 

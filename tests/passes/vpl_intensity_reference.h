@@ -332,8 +332,9 @@ inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scen
       }
     }
     if (best > 1e299) continue;
-    areas[owner] += side.area;
-    if (second - best < 1e-5 * (1 + best)) *doubtful += side.area;
+    const float area = std::max(side.area, side.emissionArea);
+    areas[owner] += area;
+    if (second - best < 1e-5 * (1 + best)) *doubtful += area;
   }
   return areas;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "fovea/pass.h"
 
@@ -211,6 +212,25 @@ vec3 average(const std::array<uint64_t, 3>& sum, uint64_t weight) {
   return vec3(glm::dvec3(double(sum[0]), double(sum[1]), double(sum[2])) / double(weight));
 }
 
+// The area of a plane within the unit cube, by slices, but at most that of a disc of 1.5 radii.
+double reachOf(glm::dvec3 position, glm::dvec3 normal, double area) {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
+  int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  if (std::abs(normal[u]) > std::abs(normal[v])) std::swap(u, v);
+  const double slopeU = -normal[u] / normal[axis];
+  double slopeV = -normal[v] / normal[axis], within = 0;
+  if (std::abs(slopeV) < 0.01) slopeV = slopeV < 0 ? -0.01 : 0.01;
+  for (int slice = 0; slice < 8; ++slice) {
+    const double height = position[axis] + slopeU * ((slice + 0.5) / 8 - position[u]) - slopeV * position[v];
+    const double low = std::clamp((-0.01 - height) / slopeV, 0.0, 1.0),
+                 high = std::clamp((1.01 - height) / slopeV, 0.0, 1.0);
+    within += std::abs(high - low) / 8;
+  }
+  return std::min(within / std::abs(normal[axis]), 2.25 * area);
+}
+
 scene::VoxelSide resolveSide(const scene::VoxelGrid& grid, uint32_t linear, uint32_t side, const Sums& sums) {
   scene::VoxelSide result;
   if (sums.area == 0) return result;
@@ -224,10 +244,13 @@ scene::VoxelSide resolveSide(const scene::VoxelGrid& grid, uint32_t linear, uint
   result.normal = length > 1e-3f ? normal / length : vec3(side == 0 ? 0.57735027f : -0.57735027f);
   result.object = float(0xffffu - (sums.object & 0xffffu));
   result.reflectance = average(sums.reflectance, sums.area);
-  const glm::vec3 along = glm::abs(result.normal);
-  const double face = 4294967296.0 / double(std::max({along.x, along.y, along.z})),
-               emissive = double(sums.weight - sums.area) / 255;
-  result.emission = average(sums.emission, uint64_t(std::max(emissive, std::min(double(sums.area), face))));
+  if (sums.weight > sums.area) {
+    const double emissive = double(sums.weight - sums.area) / 255 / 0x1p32;
+    const double reach =
+        reachOf(average(sums.position, sums.weight), result.normal, double(sums.area) / 0x1p32);
+    result.emission = average(sums.emission, uint64_t(0x1p32 * std::max(emissive, reach)));
+    result.emissionArea = float(std::max(emissive, reach)) * grid.cell * grid.cell;
+  }
   return result;
 }
 

@@ -287,7 +287,7 @@ TEST(Bind, DeviceLimitsNameThePassTheLimitAndWhatToChange) {
               &env),
       HasSubstr(
           "pass `shadow-atlas`: `maps`: 2100 layers of 128x128 exceed this device's maxImageArrayLayers 2048 "
-          "(at passes.shadow-atlas)\n  -> lower what it follows from: `map_size`, `vpls`"));
+          "(at passes.e.params.vpl_count)\n  -> lower what it follows from: `vpl_count`"));
   EXPECT_THAT(
       errorOf(
           R"({"passes": {"e": {"type": "emit", "params": {"vpl_count": 100000}}}, "outputs": {"o": "e"}})",

@@ -235,10 +235,12 @@ INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes,
                          [](const auto& info) { return std::string(info.param.name); });
 
 const Expected kValidation[] = {{"alley", 82500, true, true, 0},
+                                {"chapel", 18600, true, true, 1},
                                 {"dollhouse", 132300, false, true, 2},
                                 {"gallery", 58000, true, true, 0},
                                 {"greenhouse", 112600, true, true, 1},
                                 {"hangar", 35300, true, true, 1},
+                                {"kitchen", 21300, true, true, 3},
                                 {"laundry", 71200, true, true, 0},
                                 {"lounge", 86000, true, true, 4},
                                 // No validation scenes, but checked as such.

@@ -47,6 +47,41 @@ TEST(Migrate, WhatBelongsToTheFrameMovesToTheView) {
 )");
 }
 
+TEST(Migrate, ReservoirsOfThePreviousFrameAreMoved) {
+  EXPECT_EQ(migrated(R"({
+  "passes": {
+    "temporal-visibility": {
+      "type": "reservoirs-visibility-$tracer",
+      "inputs": { "gbuffer": "gbuffer", "other_gbuffer": "gbuffer@previous", "others": "temporal@previous" },
+      "params": { "previous": true }
+    },
+    "temporal": {
+      "type": "reservoirs-merge",
+      "inputs": { "gbuffer": "gbuffer", "other_gbuffer": "gbuffer@previous", "others": "temporal@previous" }
+    },
+    "spatial": { "type": "reservoirs-merge", "inputs": { "gbuffer": "gbuffer", "other_gbuffer": "gbuffer", "others": "temporal" } }
+  }
+}
+)"),
+            R"({
+  "version": 2,
+  "view": { "materials": "diffuse" },
+  "passes": {
+    "temporal-motion": { "type": "reservoirs-motion", "inputs": { "previous": "gbuffer@previous", "samples": "temporal@previous" } },
+    "temporal-visibility": {
+      "type": "reservoirs-visibility",
+      "inputs": { "gbuffer": "gbuffer", "moved": "temporal-motion.moved", "others": "temporal-motion.reservoirs" }
+    },
+    "temporal": {
+      "type": "reservoirs-merge",
+      "inputs": { "gbuffer": "gbuffer", "moved": "temporal-motion.moved", "others": "temporal-motion.reservoirs" }
+    },
+    "spatial": { "type": "reservoirs-merge", "inputs": { "gbuffer": "gbuffer", "others": "temporal" } }
+  }
+}
+)");
+}
+
 // A variant names only what it changes.
 TEST(Migrate, ParametersOfVariantsMoveToTheView) {
   EXPECT_EQ(migrated(R"({"extends": "foveal.json", "parameters": {"jitter": 4, "materials": "full"}})"),
@@ -106,7 +141,7 @@ TEST(Migrate, LoadingAnOldFileWarns) {
   EXPECT_THAT(messages.format(), HasSubstr("old.json:2:83: warning: a graph of version 1"));
   EXPECT_THAT(messages.format(), HasSubstr("`fovea migrate old.json` rewrites it"));
   ASSERT_EQ(graph.view.size(), 1u);
-  EXPECT_EQ(graph.view[0].where->line, 2);
+  EXPECT_EQ(graph.view[0].value->where.line, 2);
 }
 
 TEST(Migrate, AVersionThatIsNotKnownIsAnError) {

@@ -25,9 +25,10 @@ std::string printed(const std::string& text) {
 }
 
 TEST(Expression, PrintsWhatItReads) {
-  for (const char* text : {"7", "radius", "view.width / 2", "picture.width + 1", "radius * 2 + 1",
-                           "max(a, b * 2)", "wired(direct)", "read(image)", "gbuffer.position.height",
-                           "scene.triangles", "cells.count / 64", "kernel == disc", "(a + b) * 2"})
+  for (const char* text :
+       {"7", "radius", "view.width / 2", "picture.width + 1", "radius * 2 + 1", "max(a, b * 2)",
+        "wired(direct)", "read(image)", "gbuffer.position.height", "scene.triangles", "cells.count / 64",
+        "kernel == disc", "(a + b) * 2", "a + 1 <= b.count", "(a <= b) * wired(c)", "same(a, b.width * 2)"})
     EXPECT_EQ(printed(text), text);
 }
 
@@ -42,7 +43,8 @@ TEST(Expression, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(printed(""), "error at 0: the expression ends where a value is expected");
   EXPECT_EQ(printed("1 +"), "error at 3: the expression ends where a value is expected");
   EXPECT_EQ(printed("2 ? 3"), "error at 2: unexpected `?`");
-  EXPECT_EQ(printed("log(2)"), "error at 4: there is no function `log`; there are min, max, wired and read");
+  EXPECT_EQ(printed("log(2)"),
+            "error at 4: there is no function `log`; there are min, max, same, wired and read");
   EXPECT_EQ(printed("image.size"),
             "error at 10: `image` has no `size`; a port has width, height, layers or count");
   EXPECT_EQ(printed("min(1 2)"), "error at 6: expected `,`");

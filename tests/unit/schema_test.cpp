@@ -62,7 +62,7 @@ struct Case {
 const Case kCases[] = {
     {R"({"$schema": "x", "description": "d", "extends": "b.json", "parameters": {"n": 1}, "passes": {}, "outputs": {}})",
      true},
-    {R"({"passes": {"a": {"type": "source", "params": {"count": 5, "radius": "$r", "kernel": "disc", "fast": true}}}, "outputs": {"o": "a.image"}})",
+    {R"({"parameters": {"r": 1}, "passes": {"a": {"type": "source", "params": {"count": 5, "radius": "$r", "kernel": "disc", "fast": true}}}, "outputs": {"o": "a.image"}})",
      true},
     {R"({"passes": {"a": null, "b": {"params": {"count": 5}}, "f": {"type": "filter", "inputs": {"image": "left/a.image@previous"}}}})",
      true},
@@ -71,6 +71,7 @@ const Case kCases[] = {
     {R"({"inputs": {"i": {"format": "rgba16f", "width": 4, "height": "$h"}, "v": {"element": "Vpl", "stride": 64, "count": 2},
         "g": {"bundle": "gbuffer", "members": {"depth": {"format": "d32f"}}}, "s": {"doc": "x", "optional": true}}})",
      true},
+    {R"({"passes": {"a": {"type": "source", "params": {"radius": "$r"}}}})", false},
     {R"({"pases": {}})", false},
     {R"({"passes": {"a": {"type": "sourse"}}})", false},
     {R"({"passes": {"a": {"type": "source", "parms": {}}}})", false},

@@ -95,10 +95,10 @@ TEST(SharedRecords, Vpls) {
 TEST(SharedRecords, Voxels) {
   using namespace scene;
   const char* header = "records/voxel.h";
-  expectLayout(
-      header, "VoxelSide", sizeof(VoxelSide),
-      {AT(VoxelSide, position), AT(VoxelSide, area), AT(VoxelSide, normal), AT(VoxelSide, object),
-       AT(VoxelSide, reflectance), AT(VoxelSide, triangle), AT(VoxelSide, emission), AT(VoxelSide, unused1)});
+  expectLayout(header, "VoxelSide", sizeof(VoxelSide),
+               {AT(VoxelSide, position), AT(VoxelSide, area), AT(VoxelSide, normal), AT(VoxelSide, object),
+                AT(VoxelSide, reflectance), AT(VoxelSide, triangle), AT(VoxelSide, emission),
+                AT(VoxelSide, emissionArea)});
   expectLayout(header, "VoxelInfo", sizeof(VoxelInfo),
                {AT(VoxelInfo, voxels), AT(VoxelInfo, staticVoxels), AT(VoxelInfo, overflow),
                 AT(VoxelInfo, resolution)});

@@ -81,8 +81,8 @@ class Requests {
                         "hidden", "../private", "picture.jpg", "index.html",  "style.css"};
   const Texts kSources = {"image",   "radiance",     "ids",         "list", "none",
                           "a:b@1.2", "second!image", "%22%0d%0aX:", ""};
-  const Texts kKeys = {"x",       "y",   "width", "height", "exposure", "low",   "high",        "channel",
-                       "quality", "fit", "marks", "curve",  "after",    "minus", "false_color", "reference"};
+  const Texts kKeys = {"x",       "y",   "width", "height", "exposure", "low",   "high", "channel",
+                       "quality", "fit", "marks", "curve",  "after",    "minus", "map",  "reference"};
   const Texts kValues = {"0",         "1",    "2",   "4",     "7",   "-1",   "1e9",
                          "1e-30",     "nan",  "inf", "alpha", "red", "100",  "image",
                          "luminance", "srgb", "ids", "",      "%31", "9e15", "list"};

@@ -135,7 +135,7 @@ TEST(ViewDisplay, FitsTheRangeOfDataButNotOfColours) {
 TEST(ViewDisplay, FalseColoursGetLighter) {
   std::vector<float> ramp(256);
   for (size_t i = 0; i < ramp.size(); ++i) ramp[i] = float(i);
-  const Pixels p = draw(image(VK_FORMAT_R32_SFLOAT, 256, 1, ramp), parseDisplay("false_color=1&high=255"));
+  const Pixels p = draw(image(VK_FORMAT_R32_SFLOAT, 256, 1, ramp), parseDisplay("map=helix&high=255"));
   const auto lightness = [&](size_t i) {
     const Rgb c = pixel(p, i);
     return 0.3 * c[0] + 0.59 * c[1] + 0.11 * c[2];
@@ -143,6 +143,29 @@ TEST(ViewDisplay, FalseColoursGetLighter) {
   EXPECT_EQ(pixel(p, 0), (Rgb{0, 0, 0}));
   EXPECT_EQ(pixel(p, 255), (Rgb{255, 255, 255}));
   for (size_t i = 0; i + 8 < 256; i += 8) EXPECT_LT(lightness(i), lightness(i + 8)) << i;
+}
+
+TEST(ViewDisplay, NumbersBelowZeroAreBlueAndThoseAboveRed) {
+  const auto data = image<float>(VK_FORMAT_R32_SFLOAT, 4, 1, {-1, 0, 0.5f, 2});
+  for (const char* how : {"fit=1", "fit=1&map=signed", "map=signed&low=-1&high=2"}) {
+    const Pixels p = draw(data, parseDisplay(how));
+    EXPECT_EQ(p.map, Display::Map::Signed) << how;
+    EXPECT_EQ(p.low, -2) << how;
+    EXPECT_EQ(p.high, 2) << how;
+    const Rgb below = pixel(p, 0), zero = pixel(p, 1), above = pixel(p, 2), most = pixel(p, 3);
+    EXPECT_GT(below[2], below[0]) << how;
+    EXPECT_EQ(*std::ranges::min_element(zero), *std::ranges::max_element(zero)) << how;
+    EXPECT_GT(zero[0], 240) << how;
+    EXPECT_GT(above[0], above[2]) << how;
+    EXPECT_GT(above[2], most[2]) << how;
+  }
+  EXPECT_EQ(draw(data, parseDisplay("fit=1&map=plain")).map, Display::Map::Plain);
+  // Colours stay colours, and numbers without a sign are grey.
+  const auto color = image<float>(VK_FORMAT_R32G32B32A32_SFLOAT, 1, 1, {-0.5f, 0.5f, 0.5f, 1});
+  EXPECT_EQ(draw(color, parseDisplay("fit=1")).map, Display::Map::Plain);
+  EXPECT_EQ(draw(color, parseDisplay("fit=1&channel=red")).map, Display::Map::Signed);
+  const auto positive = image<float>(VK_FORMAT_R32_SFLOAT, 2, 1, {0, 2});
+  EXPECT_EQ(draw(positive, parseDisplay("fit=1")).map, Display::Map::Plain);
 }
 
 TEST(ViewDisplay, PreviewsAreSmallerAndJpegsAreJpegs) {

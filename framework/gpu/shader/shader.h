@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "fovea/graph.h"
+
 namespace fovea::gpu {
 
 using Defines = std::map<std::string, std::string>;
@@ -27,12 +29,7 @@ enum class BindingKind {
   AccelerationStructure
 };
 
-struct ReflectedMember {  // of a block or of a struct in one
-  std::string name;
-  uint32_t offset = 0, bytes = 0;
-  enum class Type { Int, Uint, Float, Other } type = Type::Other;  // scalar or vector element type
-  uint32_t components = 1;  // all elements of a matrix or a tightly packed array
-};
+using ReflectedMember = graph::RecordField;  // of a block or of a struct in one
 
 struct ReflectedBinding {
   std::string name;  // instance name, or block name if the block has no instance name

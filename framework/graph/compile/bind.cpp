@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "framework/base/hash.h"
@@ -29,134 +28,6 @@ std::string passPath(const Binding& b, uint32_t pass, std::string_view rest) {
 }
 
 namespace {
-
-// ---- Parameters --------------------------------------------------------------------------------------
-
-// False if the value is of another type or out of range.
-bool assign(const ParameterSpec& spec, const json::Value& given, Value& out) {
-  using Type = ParameterSpec::Type;
-  const bool inRange = given.real >= spec.min && given.real <= spec.max && std::isfinite(given.real);
-  switch (spec.type) {
-    case Type::Bool:
-      if (given.isBool()) out = given.boolean;
-      return given.isBool();
-    case Type::Int:
-      if (!given.isInt() || !inRange) return false;
-      out = given.integer;
-      return true;
-    case Type::Real:
-      if (!given.isNumber() || !inRange) return false;
-      out = given.real;
-      return true;
-    case Type::Choice:
-      if (std::find(spec.choices.begin(), spec.choices.end(), given.string) == spec.choices.end())
-        return false;
-      break;
-    case Type::Text:
-      break;
-  }
-  if (given.isString()) out = given.string;
-  return given.isString();
-}
-
-std::string rangeText(const ParameterSpec& spec) {
-  const char* kind = spec.type == ParameterSpec::Type::Int ? "a whole number" : "a number";
-  if (std::isinf(spec.min) && std::isinf(spec.max)) return kind;
-  if (std::isinf(spec.max)) return fmt::format("{} of at least {}", kind, spec.min);
-  if (std::isinf(spec.min)) return fmt::format("{} of at most {}", kind, spec.max);
-  return fmt::format("{} from {} to {}", kind, spec.min, spec.max);
-}
-
-std::string describeExpected(const ParameterSpec& spec) {
-  switch (spec.type) {
-    case ParameterSpec::Type::Bool:
-      return "true or false";
-    case ParameterSpec::Type::Int:
-    case ParameterSpec::Type::Real:
-      return rangeText(spec);
-    case ParameterSpec::Type::Choice:
-      return fmt::format("one of {}", fmt::join(spec.choices, ", "));
-    case ParameterSpec::Type::Text:
-      return "a text";
-  }
-  return {};
-}
-
-std::string describeGiven(const json::Value& given) {
-  if (given.isBool()) return given.boolean ? "true" : "false";
-  if (given.isInt()) return fmt::format("{}", given.integer);
-  return given.isNumber() ? fmt::format("{}", given.real) : fmt::format("`{}`", given.string);
-}
-
-// A text in which what stands for one of the environment's, from its '$' on, is that text.
-std::string fromEnvironment(const Binding& b, const std::string& text) {
-  const size_t dollar = text.find('$');
-  if (dollar == std::string::npos) return text;
-  for (const auto& [name, value] : b.environment.texts)
-    if (std::string_view(text).substr(dollar + 1) == name) return text.substr(0, dollar) + value;
-  return text;
-}
-
-// path: of the value in its document.
-void readParameter(Binding& b, std::string path, const ParameterSpec& spec, const ParameterDescription& given,
-                   Value& out) {
-  json::Value value = *given.value;
-  if (given.fromEnvironment) value.string = fromEnvironment(b, value.string);
-  if (assign(spec, value, out)) return;
-  using Type = ParameterSpec::Type;
-  if (given.fromCommandLine && value.isString() && spec.type != Type::Choice && spec.type != Type::Text) {
-    using Json = json::Value::Type;
-    if (readTyped(value.string, spec.type == Type::Bool ? Json::Bool : Json::Real, value) &&
-        assign(spec, value, out))
-      return;
-  }
-  std::string nearest;
-  if (spec.type == Type::Choice && value.isString()) nearest = nearestName(value.string, spec.choices);
-  report(b, *given.where, std::move(path),
-         fmt::format("parameter `{}`: expected {}, found {}", spec.name, describeExpected(spec),
-                     describeGiven(value)),
-         nearest.empty() ? nearest : fmt::format("did you mean `{}`?", nearest));
-}
-
-// Values of all `specs`: the given ones, or else the defaults. owner: who has these parameters, for messages; path: of
-// their object in its document.
-Parameters bindParameters(Binding& b, const std::string& owner, const std::string& path,
-                          const std::vector<ParameterSpec>& specs,
-                          std::span<const ParameterDescription> given, std::vector<Value>& values) {
-  const size_t first = values.size();
-  for (const ParameterSpec& spec : specs) values.push_back(spec.defaultValue);
-  for (const ParameterDescription& one : given) {
-    const std::string& name = one.given->key;
-    const std::string place = json::joinPath(path, name);
-    const auto spec =
-        std::find_if(specs.begin(), specs.end(), [&](const ParameterSpec& s) { return s.name == name; });
-    if (spec != specs.end()) {
-      readParameter(b, place, *spec, one, values[first + static_cast<size_t>(spec - specs.begin())]);
-      continue;
-    }
-    std::vector<std::string> names;
-    for (const ParameterSpec& s : specs) names.push_back(s.name);
-    report(b, one.given->keyWhere, place, fmt::format("{} has no parameter `{}`", owner, name),
-           findParameter(viewParameters(), name)
-               ? fmt::format("it belongs to the frame: set `{}` in \"view\" of the graph, or --set view.{}",
-                             name, name)
-               : remedyFor(name, names));
-  }
-  return {&specs, &values, first};
-}
-
-// What belongs to the frame. Its materials are those of the scene unless the graph or the run decides.
-void bindViewParameters(Binding& b, std::vector<Value>& values) {
-  b.graph.view = bindParameters(b, "the view", "view", viewParameters(), b.description.view, values);
-  const auto& given = b.description.view;
-  for (size_t i = 0; i < viewParameters().size(); ++i) {
-    const std::string& name = viewParameters()[i].name;
-    if (std::any_of(given.begin(), given.end(), [&](const auto& g) { return g.given->key == name; }))
-      continue;
-    for (const auto& [text, value] : b.environment.texts)
-      if (text == "scene." + name) values[i] = value;
-  }
-}
 
 // ---- Passes ------------------------------------------------------------------------------------------
 
@@ -204,13 +75,17 @@ void bindView(Binding& b, uint32_t p) {
 }
 
 const PassDeclaration* findType(Binding& b, const Registry& registry, uint32_t p) {
-  const json::Value* type = b.description.passes[p].type;
-  if (!type) return nullptr;
-  const std::string name = fromEnvironment(b, type->string);
+  const PassDescription& pass = b.description.passes[p];
+  if (!pass.type) return nullptr;
+  const std::string name = fromEnvironment(b, pass.type->string);
   const PassDeclaration* declaration = registry.find(name);
   if (declaration) return declaration;
+  if (pass.typeFrom) {
+    b.misfits[p] = {};  // what is allowed in its place says enough
+    return nullptr;
+  }
   const std::string nearest = nearestName(name, registry.types());
-  report(b, type->where, passPath(b, p, "type"), fmt::format("no pass type `{}`", name),
+  report(b, pass.type->where, passPath(b, p, "type"), fmt::format("no pass type `{}`", name),
          nearest.empty()
              ? std::string(
                    "`fovea passes` lists them; a program of yours has those that it registers, the stock "
@@ -219,10 +94,16 @@ const PassDeclaration* findType(Binding& b, const Registry& registry, uint32_t p
   return nullptr;
 }
 
+// Whether a `null` removed something that is needed, which is reported later.
+bool isMissing(const Description& description) {
+  return std::ranges::any_of(description.removals, [](const Removal& r) { return !r.neededAt.empty(); });
+}
+
 void declarePasses(Binding& b, std::vector<Value>& values) {
   const Registry& registry = b.environment.registry ? *b.environment.registry : Registry::global();
   const auto count = static_cast<uint32_t>(b.description.passes.size());
   b.graph.passes.resize(count);
+  b.uses.resize(b.description.graphParameters.size());
   values.reserve(b.description.parameters.size() + count);  // estimate: one default per pass
   bindViewParameters(b, values);
   b.ports.reserve(b.description.wires.size() + 2 * count);  // estimate: all inputs wired, two outputs each
@@ -238,15 +119,23 @@ void declarePasses(Binding& b, std::vector<Value>& values) {
     pass.parameters = bindParameters(
         b, fmt::format("`{}`", pass.declaration->type), passPath(b, p, "params"),
         pass.declaration->parameters,
-        std::span(b.description.parameters).subspan(from.firstParameter, from.parameterCount), values);
+        std::span(b.description.parameters).subspan(from.firstParameter, from.parameterCount), values, p);
     uint16_t index = 0;
     for (const PortSpec& spec : pass.declaration->ports) b.ports.push_back({&spec, p, index++});
     effects |= pass.declaration->sideEffects;
   }
   b.firstPort.push_back(static_cast<uint32_t>(b.ports.size()));
-  if (b.description.outputs.empty() && !effects && !b.diagnostics.hasErrors())
+  const bool hasErrors =
+      b.diagnostics.hasErrors() || !b.misfits.empty() || !b.wrongValues.empty() || isMissing(b.description);
+  if (b.description.outputs.empty() && !effects && !hasErrors)
     b.diagnostics.error(b.description.start, "outputs", "the graph has no outputs, so nothing would run",
                         "add \"outputs\": {\"image\": \"pass.port\"}");
+}
+
+// Whether no mistake has been found, of which some are reported only at the end.
+bool isSound(const Binding& b) {
+  return !b.diagnostics.hasErrors() && b.misfits.empty() && b.wrongValues.empty() && b.unwired.empty() &&
+         std::ranges::all_of(b.removals, [](const Removal& r) { return r.neededAt.empty(); });
 }
 
 // Marks a pass and those that it reads from.
@@ -439,6 +328,11 @@ uint64_t graphHash(const BoundGraph& graph) {
 }  // namespace detail
 
 BoundGraph bind(const Description& description, const Environment& environment, Diagnostics& diagnostics) {
+  return bind(description, environment, diagnostics, true);
+}
+
+BoundGraph bind(const Description& description, const Environment& environment, Diagnostics& diagnostics,
+                bool suggest) {
   BoundGraph graph;
   graph.name = description.name;
   graph.description = description.description;
@@ -447,7 +341,8 @@ BoundGraph bind(const Description& description, const Environment& environment, 
   const auto accesses = std::make_shared<std::vector<Access>>();
   graph.values = values;
   graph.accesses = accesses;
-  detail::Binding b{description, environment, diagnostics, graph};
+  detail::Binding b{description, environment, diagnostics, graph, suggest};
+  b.removals = description.removals;
   detail::openFirstView(b);
   detail::declarePasses(b, *values);
   detail::assignWires(b);
@@ -463,6 +358,12 @@ BoundGraph bind(const Description& description, const Environment& environment, 
   detail::bindOutputs(b);
   detail::markHistory(b);
   if (order.size() == graph.passes.size()) detail::checkInPlace(b);
+  if (detail::isSound(b)) detail::checkRequirements(b);
+  detail::reportWrongValues(b);
+  detail::reportUnusedOverrides(b);
+  detail::reportUnwired(b);
+  detail::reportRemovals(b);
+  detail::reportMisfits(b);
   diagnostics.throwIfErrors();
   detail::chooseLayouts(graph, *accesses);
   graph.hash = detail::graphHash(graph);

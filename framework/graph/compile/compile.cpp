@@ -10,9 +10,10 @@
 #include "framework/base/hash.h"
 #include "framework/graph/compile/alias.h"
 #include "framework/graph/compile/barriers.h"
-#include "framework/graph/compile/expand.h"
 #include "framework/graph/compile/schedule.h"
+#include "framework/graph/document/document.h"
 #include "framework/graph/migrate/migrate.h"
+#include "framework/graph/resolve/expand.h"
 
 namespace fovea::graph {
 namespace {
@@ -73,9 +74,7 @@ Description load(const std::string& nameOrPath, const LoadOptions& options, Diag
 
 Description loadText(std::string_view text, const std::filesystem::path& file, const LoadOptions& options,
                      Diagnostics& diagnostics) {
-  json::Value document = json::parse(text, file.string());
-  migrateLoaded(document, diagnostics);
-  return resolve(std::make_shared<const json::Value>(std::move(document)), file, options, diagnostics);
+  return resolve(Document::parse(text, file), options, diagnostics);
 }
 
 Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& options) {

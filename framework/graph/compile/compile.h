@@ -22,8 +22,8 @@
 
 #include "fovea/error.h"
 #include "framework/graph/compile/plan.h"
-#include "framework/graph/compile/resolve.h"
 #include "framework/graph/pass/registry.h"
+#include "framework/graph/resolve/resolve.h"
 #include "framework/graph/steps/steps.h"
 
 namespace fovea::graph {

@@ -9,12 +9,13 @@
 namespace fovea::graph::detail {
 
 std::string wirePath(const Binding& b, const Port& port) {
+  if (port.wire->nearest) return port.wire->nearestPath;
   if (!port.spec) return json::joinPath("outputs", port.wire->target());
   return passPath(b, port.pass, json::joinPath("inputs", port.wire->target()));
 }
 
 void reportWire(Binding& b, const Port& port, std::string message, std::string remedy) {
-  report(b, port.wire->written->value.where, wirePath(b, port), std::move(message), std::move(remedy));
+  report(b, port.wire->where(), wirePath(b, port), std::move(message), std::move(remedy));
 }
 
 uint32_t versionSeen(const Binding& b, const Port& port, uint32_t resource) {
@@ -39,6 +40,13 @@ uint32_t resourceOf(const Binding& b, const Port& port, uint32_t m) {
     for (uint32_t k = 0; k < members.size(); ++k)
       if (members[k] == wanted) return value.first + k;
   }
+  return kNone;
+}
+
+uint32_t resourceNamed(Binding& b, uint32_t pass, std::string_view name) {
+  for (const Port& port : b.portsOf(pass))
+    for (uint32_t m = 0; m < port.spec->members.size(); ++m)
+      if (memberPath(*port.spec, port.spec->members[m]) == name) return resourceOf(b, port, m);
   return kNone;
 }
 
@@ -72,10 +80,14 @@ std::string describeValue(const Binding& b, const PortValue& value) {
   return describeResource(b.graph.resources[value.first].desc);
 }
 
+}  // namespace
+
 std::string describeWanted(const PortSpec& spec) {
   return spec.bundle.empty() ? describeResource(spec.members[0].resource)
                              : fmt::format("a bundle `{}`", spec.bundle);
 }
+
+namespace {
 
 // ---- From names to ports -----------------------------------------------------------------------------
 
@@ -128,7 +140,13 @@ void reportNoOutput(Binding& b, const Port& port) {
     for (const MemberSpec& m : spec.members)
       if (!m.name.empty()) names.push_back(name + "." + spec.name + "." + m.name);
   }
-  const std::string nearest = nearestName(wire.text(), names);
+  if (blameType(b, wire.pass, wire.where(), fmt::format("it has no output `{}`", wire.port))) return;
+  std::vector<std::string> spellings = names;
+  if (onlyOutput(b.graph.passes[wire.pass].declaration->ports) != kNone)  // whose name may be left out
+    for (const std::string& known : names)
+      if (const size_t dot = known.find('.', name.size() + 1); dot != std::string::npos)
+        spellings.push_back(name + known.substr(dot));
+  const std::string nearest = nearestName(wire.text(), spellings);
   reportWire(b, port,
              wire.port.empty() ? fmt::format("`{}` has {} outputs: name one", wire.text(), names.size())
                                : fmt::format("no output `{}`", wire.text()),
@@ -204,28 +222,47 @@ bool fits(const Binding& b, const MemberSpec& wanted, uint32_t resource) {
   return made ? compare(made->resource) : compare(b.graph.resources[resource].desc);
 }
 
-std::string missingRemedy(const Binding& b, const PortSpec& spec) {
+// Marks the passes that need a pass in the same frame, itself included.
+void markDependents(const Binding& b, uint32_t pass, std::vector<uint8_t>& marks) {
+  marks[pass] = 1;
+  for (bool more = true; more;) {
+    more = false;
+    for (const Port& port : b.ports) {
+      if (port.source == kNone || port.previous() || marks[port.pass] || !marks[b.ports[port.source].pass])
+        continue;
+      marks[port.pass] = 1;
+      more = true;
+    }
+  }
+}
+
+}  // namespace
+
+std::string missingRemedy(const Binding& b, const Port& missing) {
+  const PortSpec& spec = *missing.spec;
+  std::vector<uint8_t> wouldWait(b.graph.passes.size(), 0);  // for this pass, so that none could come first
+  markDependents(b, missing.pass, wouldWait);
   std::vector<std::string> names;
   for (const Port& port : b.ports) {
     const PortSpec& other = *port.spec;
     if (other.direction != Direction::Output || other.bundle != spec.bundle || names.size() >= 6) continue;
+    if (wouldWait[port.pass]) continue;
     if (spec.bundle.empty() && !fits(b, spec.members[0], port.value.first)) continue;
     names.push_back(fmt::format("{}.{}", b.graph.passes[port.pass].name, other.name));
   }
-  if (names.empty()) return "no pass of the graph makes one";
+  if (names.empty()) return "no other pass of the graph makes one";
   return fmt::format("these would fit: {}", fmt::join(names, ", "));
 }
 
-void reportUnwired(Binding& b, const Port& port) {
-  const PortSpec& spec = *port.spec;
-  // A wire that was given but could not be resolved has been reported already.
-  const std::string path = passPath(b, port.pass, "inputs." + spec.name);
-  for (const Diagnostic& d : b.diagnostics.list())
-    if (d.path == path && b.diagnostics.hasErrors()) return;
-  report(b, b.description.passes[port.pass].written->keyWhere, passPath(b, port.pass, "inputs"),
-         fmt::format("`{}`: the input `{}` ({}) is not wired", b.graph.passes[port.pass].name, spec.name,
-                     describeWanted(spec)),
-         missingRemedy(b, spec));
+namespace {
+
+void noteUnwired(Binding& b, const Port& port) {
+  const PassDescription& pass = b.description.passes[port.pass];
+  const std::string path = passPath(b, port.pass, "inputs." + port.spec->name);
+  if (Removal* removal = findRemoval(b.removals, pass.document, path))
+    removal->neededAt.push_back(path);
+  else
+    b.unwired[port.pass].push_back(&port);
 }
 
 // "" if the description of the value as a whole is enough.
@@ -243,6 +280,9 @@ std::string describeMisfit(const Binding& b, const Port& port, uint32_t m) {
 // `m` is the first member that does not fit, or kNone if the value as a whole does not.
 void reportMisfit(Binding& b, const Port& port, uint32_t m) {
   const PortSpec& spec = *port.spec;
+  const std::string what =
+      fmt::format("`{}` wants {}, but `{}` is {}{}", spec.name, describeWanted(spec), port.wire->text(),
+                  describeValue(b, port.value), m == kNone ? std::string() : describeMisfit(b, port, m));
   std::string remedy;
   if (!bundleOf(b, port.value).empty() && spec.bundle.empty() && port.value.origin)
     for (const MemberSpec& member : port.value.origin->members) {
@@ -251,11 +291,7 @@ void reportMisfit(Binding& b, const Port& port, uint32_t m) {
           remedy.empty())
         remedy = fmt::format("wire a member of it, such as `{}.{}`", port.wire->text(), member.name);
     }
-  reportWire(
-      b, port,
-      fmt::format("`{}` wants {}, but `{}` is {}{}", spec.name, describeWanted(spec), port.wire->text(),
-                  describeValue(b, port.value), m == kNone ? std::string() : describeMisfit(b, port, m)),
-      remedy);
+  blameAlong(b, port, what, remedy);
 }
 
 void checkPort(Binding& b, Port& port) {
@@ -266,10 +302,14 @@ void checkPort(Binding& b, Port& port) {
     port.value = {};
     return;
   }
-  if (bundleOf(b, port.value) != spec.bundle) return reportMisfit(b, port, kNone);
+  const auto misfit = [&](uint32_t m) {
+    reportMisfit(b, port, m);
+    port.value = {};  // so that nothing follows from it
+  };
+  if (bundleOf(b, port.value) != spec.bundle) return misfit(kNone);
   for (uint32_t m = 0; m < spec.members.size(); ++m) {
     const uint32_t resource = resourceOf(b, port, m);
-    if (resource == kNone || !fits(b, spec.members[m], resource)) return reportMisfit(b, port, m);
+    if (resource == kNone || !fits(b, spec.members[m], resource)) return misfit(m);
   }
 }
 
@@ -298,6 +338,10 @@ void assignWires(Binding& b) {
       std::vector<std::string> names;
       for (const PortSpec& spec : declaration->ports)
         if (!makes(spec)) names.push_back(spec.name);
+      if (blameType(b, p, wire.written->keyWhere, fmt::format("it has no input `{}`", wire.target())))
+        continue;
+      const std::string nearest = nearestName(wire.target(), names);
+      for (Port& meant : ports) meant.misspelt |= !nearest.empty() && meant.spec->name == nearest;
       report(b, wire.written->keyWhere, passPath(b, p, json::joinPath("inputs", wire.target())),
              port != ports.end()
                  ? fmt::format("`{}` is an output of `{}`, not an input", wire.target(), declaration->type)
@@ -309,9 +353,9 @@ void assignWires(Binding& b) {
 
 void connectWire(Binding& b, Port& port) {
   const WireDescription& wire = *port.wire;
-  if (wire.external) return connectExternal(b, port);
+  if (wire.external && !wire.broken) return connectExternal(b, port);
   port.state = Port::State::Known;  // without a value, if a mistake was or is reported
-  const PassDeclaration* declaration = b.graph.passes[wire.pass].declaration;
+  const PassDeclaration* declaration = wire.broken ? nullptr : b.graph.passes[wire.pass].declaration;
   if (!declaration) return;
   uint32_t index, member;
   if (!selectPort(declaration->ports, wire, index, member)) return reportNoOutput(b, port);
@@ -331,7 +375,7 @@ void followValues(Binding& b) {
 void checkTypes(Binding& b) {
   for (Port& port : b.ports) {
     if (makes(*port.spec)) continue;
-    if (!port.wire && !port.spec->optional) reportUnwired(b, port);
+    if (!port.wire && !port.spec->optional && !port.misspelt) noteUnwired(b, port);
     if (port.value.first != kNone) checkPort(b, port);
   }
 }

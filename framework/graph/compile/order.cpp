@@ -44,8 +44,9 @@ void reportCycles(Binding& b, const std::vector<uint8_t>& placed) {
     std::rotate(circle.begin(), std::min_element(circle.begin(), circle.end()), circle.end());
     std::string names;
     for (const uint32_t p : circle) names += b.graph.passes[p].name + " <- ";
-    const Port& port = *waiting[circle[0]];
-    reportWire(b, port,
+    const Port* port = waiting[circle[0]];
+    for (const uint32_t p : circle) port = &nearestWire(b, {port, waiting[p]});
+    reportWire(b, *port,
                fmt::format("these passes wait for each other: {}{}", names, b.graph.passes[circle[0]].name),
                "one of these wires must read last frame's value: append @previous");
   }

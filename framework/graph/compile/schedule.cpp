@@ -54,16 +54,12 @@ Precedence precedence(const BoundGraph& graph, std::span<const uint32_t> makers,
   return Precedence(graph.passes.size(), edges);
 }
 
-namespace {
-
-// Marks the passes and resources that are needed, directly or by others.
-void cull(const BoundGraph& graph, const std::vector<uint32_t>& makers, Schedule& schedule) {
-  schedule.passLive.assign(graph.passes.size(), 0);
-  schedule.resourceLive.assign(graph.resources.size(), 0);
+Live cull(const BoundGraph& graph, const std::vector<uint32_t>& makers) {
+  Live live{std::vector<uint8_t>(graph.passes.size()), std::vector<uint8_t>(graph.resources.size())};
   std::vector<uint32_t> work;
   work.reserve(graph.passes.size());
   const auto need = [&](uint32_t pass) {
-    if (pass != kNone && !std::exchange(schedule.passLive[pass], 1)) work.push_back(pass);
+    if (pass != kNone && !std::exchange(live.passLive[pass], 1)) work.push_back(pass);
   };
   for (uint32_t p = 0; p < graph.passes.size(); ++p) {
     if (graph.passes[p].declaration->sideEffects) need(p);
@@ -78,7 +74,7 @@ void cull(const BoundGraph& graph, const std::vector<uint32_t>& makers, Schedule
     work.pop_back();
     for (const Access& a : graph.passes[p].accesses) {
       const BoundResource& resource = graph.resources[a.resource];
-      schedule.resourceLive[a.resource] = 1;
+      live.resourceLive[a.resource] = 1;
       if (!a.previous && resource.lifetime == Lifetime::Transient) {
         if (a.reads) need(makers[a.writes ? a.slot - 1 : a.slot]);
       } else if (!std::exchange(allMakers[a.resource], 1)) {
@@ -86,7 +82,10 @@ void cull(const BoundGraph& graph, const std::vector<uint32_t>& makers, Schedule
       }
     }
   }
+  return live;
 }
+
+namespace {
 
 std::vector<uint32_t> earliestLevels(const Precedence& order, const std::vector<uint8_t>& live) {
   std::vector<uint32_t> level(live.size(), 0);
@@ -140,9 +139,8 @@ void sortByLevel(Schedule& schedule) {
 }  // namespace
 
 Schedule schedule(const BoundGraph& graph, std::optional<uint32_t> randomOrder) {
-  Schedule result;
   const std::vector<uint32_t> makers = makersOfVersions(graph);
-  cull(graph, makers, result);
+  Schedule result{cull(graph, makers)};
   const Precedence order = precedence(graph, makers, result.passLive);
   result.level = randomOrder ? randomLevels(order, result.passLive, *randomOrder)
                              : earliestLevels(order, result.passLive);

@@ -10,8 +10,16 @@
 
 namespace fovea::graph {
 
-struct Schedule {
+// What is needed, directly or by others.
+struct Live {
   std::vector<uint8_t> passLive, resourceLive;
+};
+// Culls backwards from the graph's outputs, from passes with side effects and from writes to the caller's memory,
+// also through history edges. If a kept resource is used, all its writers are kept, because the next frame sees what
+// they leave. makers: makersOfVersions().
+Live cull(const BoundGraph& graph, const std::vector<uint32_t>& makers);
+
+struct Schedule : Live {
   std::vector<uint32_t> level;       // per pass; kNone when culled
   std::vector<uint32_t> order;       // live passes by level, in declaration order within a level
   std::vector<uint32_t> levelFirst;  // index into `order` per level, and the end of the last one
@@ -21,10 +29,8 @@ struct Schedule {
   }
 };
 
-// Culls backwards from the graph's outputs, from passes with side effects and from writes to the caller's memory,
-// also through history edges. If a kept resource is used, all its writers are kept, because the next frame sees what
-// they leave. Each pass then takes the earliest level after the producers of what it reads and after all readers of
-// what it overwrites. With `randomOrder` the levels are chosen at random among the legal ones, with this seed.
+// Of the passes that cull() leaves, each takes the earliest level after the producers of what it reads and after all
+// readers of what it overwrites. With `randomOrder` the levels are chosen at random among the legal ones, with this seed.
 Schedule schedule(const BoundGraph& graph, std::optional<uint32_t> randomOrder = std::nullopt);
 
 // First and last level that uses each live resource; outputs live until the end of the frame (levels()).

@@ -32,16 +32,47 @@ struct Sizes {
 
 bool evaluatePass(Sizes& sizes, uint32_t p, int depth);
 
-// "`radius`, `count`": what the sizes of a resource depend on.
-std::string quantitiesOf(const ResourceSpec& spec) {
+// The names of what sizes depend on: "radius", "count".
+std::vector<std::string> quantitiesOf(const SizeExpr& sizes) {
   std::vector<std::string> names;
+  for (const SizeExpr::Term& term : sizes.terms())
+    if (term.op >= Op::Parameter && term.op <= Op::Environment)
+      if (std::find(names.begin(), names.end(), term.name) == names.end()) names.push_back(term.name);
+  return names;
+}
+
+// All terms of the sizes of a resource, one after another.
+SizeExpr allSizes(const ResourceSpec& spec) {
+  std::vector<SizeExpr::Term> terms;
   for (const SizeExpr* size : {&spec.width, &spec.height, &spec.depth, &spec.layers, &spec.count})
-    for (const SizeExpr::Term& term : size->terms())
-      if (term.op >= Op::Parameter && term.op <= Op::Environment)
-        if (std::find(names.begin(), names.end(), term.name) == names.end()) names.push_back(term.name);
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "`" : ", `") + name + "`";
-  return text;
+    terms.insert(terms.end(), size->terms().begin(), size->terms().end());
+  return SizeExpr(std::move(terms));
+}
+
+// Reports a size at the value from which it follows, or else at the pass. A value that gives several wrong sizes is
+// reported once. `remedy` begins the advice, and the name of that value follows; `choices`, if there are any, are the
+// whole advice instead.
+void reportSize(Binding& b, uint32_t p, const ResourceSpec& spec, std::string message, std::string remedy,
+                std::string_view otherwise, const std::string& choices = {}) {
+  const SizeExpr sizes = allSizes(spec);
+  const std::vector<std::string> names = quantitiesOf(sizes);
+  const std::optional<GivenValue> given = nearestSource(b, p, sizes);
+  const json::Position where = given ? given->where : b.description.passes[p].written->keyWhere;
+  const std::string path = given ? given->path : passPath(b, p);
+  const SourceLocation location = where.location();
+  for (const Diagnostic& d : b.diagnostics.list())
+    if (d.where.file == location.file && d.where.line == location.line && d.where.column == location.column &&
+        d.path == path)
+      return;
+  if (!choices.empty())
+    remedy = choices;
+  else if (names.empty())
+    remedy = otherwise;
+  else if (given)
+    remedy += fmt::format("`{}`", given->name);
+  else
+    remedy += fmt::format("`{}`", fmt::join(names, "`, `"));
+  report(b, where, path, std::move(message), std::move(remedy));
 }
 
 // ---- Expressions -------------------------------------------------------------------------------------
@@ -49,29 +80,21 @@ std::string quantitiesOf(const ResourceSpec& spec) {
 
 std::optional<int64_t> sizeOfPort(Sizes& sizes, uint32_t p, const SizeExpr::Term& term, int depth,
                                   std::string& why) {
-  const std::string_view name = term.name;
-  const size_t dot = std::min(name.find('.'), name.size());
+  const std::string_view input = std::string_view(term.name).substr(0, term.name.find('.'));
   for (const Port& port : sizes.b.portsOf(p)) {
-    const PortSpec& spec = *port.spec;
-    if (spec.name != name.substr(0, dot)) continue;
-    if (!port.wire && spec.optional) {
-      why = fmt::format("needs the size of the input `{}`, which is not wired", spec.name);
-      return std::nullopt;
-    }
-    for (uint32_t m = 0; m < spec.members.size(); ++m) {
-      if (spec.members[m].name != name.substr(std::min(dot + 1, name.size()))) continue;
-      const uint32_t r = resourceOf(sizes.b, port, m);
-      if (r == kNone) return std::nullopt;
-      const uint32_t producer = sizes.b.origins[r].pass;
-      if (producer != kNone && sizes.states[producer] == State::InProgress) {
-        why = "depends on itself";
-        return std::nullopt;
-      }
-      if (producer != kNone && !evaluatePass(sizes, producer, depth + 1)) return std::nullopt;
-      return quantityOf(sizes.b.graph.resources[r].desc, term.op);
-    }
+    if (port.spec->name != input || port.wire || !port.spec->optional) continue;
+    why = fmt::format("needs the size of the input `{}`, which is not wired", input);
+    return std::nullopt;
   }
-  return std::nullopt;
+  const uint32_t r = resourceNamed(sizes.b, p, term.name);
+  if (r == kNone) return std::nullopt;
+  const uint32_t producer = sizes.b.origins[r].pass;
+  if (producer != kNone && sizes.states[producer] == State::InProgress) {
+    why = "depends on itself";
+    return std::nullopt;
+  }
+  if (producer != kNone && !evaluatePass(sizes, producer, depth + 1)) return std::nullopt;
+  return quantityOf(sizes.b.graph.resources[r].desc, term.op);
 }
 
 std::optional<int64_t> evaluateTerm(Sizes& sizes, uint32_t p, const SizeExpr::Term& term, int depth,
@@ -159,14 +182,10 @@ std::string describeExcess(const Environment& environment, const ResourceDesc& d
 void reportLimits(Binding& b, uint32_t p, const PortSpec& spec, const MemberSpec& member,
                   const ResourceDesc& desc) {
   const BoundPass& pass = b.graph.passes[p];
-  const std::string names = quantitiesOf(member.resource);
-  const std::string choices = otherChoices(pass, member.resource);
-  report(b, b.description.passes[p].written->keyWhere, passPath(b, p),
-         fmt::format("pass `{}`: `{}`: {}", pass.name, memberPath(spec, member),
-                     describeExcess(b.environment, desc)),
-         !choices.empty() ? choices
-         : names.empty()  ? std::string("render at a smaller size")
-                          : fmt::format("lower what it follows from: {}", names));
+  reportSize(b, p, member.resource,
+             fmt::format("pass `{}`: `{}`: {}", pass.name, memberPath(spec, member),
+                         describeExcess(b.environment, desc)),
+             "lower what it follows from: ", "render at a smaller size", otherChoices(pass, member.resource));
 }
 
 // ---- Resources ---------------------------------------------------------------------------------------
@@ -194,11 +213,10 @@ bool evaluateResource(Sizes& sizes, uint32_t p, const PortSpec& spec, const Memb
     good = false;
     if (value) why = fmt::format("is {}, it must be from 1 to {}", *value, limit);
     if (why.empty()) return;
-    const std::string names = quantitiesOf(from);
-    report(sizes.b, sizes.b.description.passes[p].written->keyWhere, passPath(sizes.b, p),
-           fmt::format("pass `{}`: {} of `{}`, {}, {}", sizes.b.graph.passes[p].name, what,
-                       memberPath(spec, member), size.print(), why),
-           names.empty() ? std::string() : fmt::format("it depends on {}", names));
+    reportSize(sizes.b, p, from,
+               fmt::format("pass `{}`: {} of `{}`, {}, {}", sizes.b.graph.passes[p].name, what,
+                           memberPath(spec, member), size.print(), why),
+               "it depends on ", {});
   };
   if (from.kind == ResourceKind::Buffer) {
     desc.element = from.element;

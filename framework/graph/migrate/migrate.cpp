@@ -108,6 +108,12 @@ Member newNumber(std::string_view key, int64_t number, const Value& object) {
   return member;
 }
 
+Member newText(std::string_view key, std::string text, const Value& object) {
+  Member member = newMember(key, Value::Type::String, object);
+  member.value.string = std::move(text);
+  return member;
+}
+
 // The object under this key, made if it is missing: before the member `before`, or at the end.
 Value& objectIn(Value& object, std::string_view key, std::string_view before = {}) {
   if (Value* found = findIn(&object, key)) return *found;
@@ -145,6 +151,7 @@ class ToVersion2 {
 
   std::vector<Change> run() {
     for (Member& pass : passes_.members) changePass(pass);
+    for (size_t p = 0; p < passes_.members.size(); ++p) p += readMovedReservoirs(p);
     moveParametersToPasses();
     moveParametersToView();
     keepDiffuse();
@@ -222,6 +229,39 @@ class ToVersion2 {
     }
   }
 
+  // Passes that reuse samples of other pixels had a second G-buffer. They read the samples of the previous frame, and its
+  // surfaces, from a pass that moves both now. Returns the number of passes that are added before this one.
+  size_t readMovedReservoirs(size_t index) {
+    Member& pass = passes_.members[index];
+    const std::string_view type = textIn(&pass.value, "type");
+    if (!isOf(type, "reservoirs-visibility") && !isOf(type, "reservoirs-merge")) return 0;
+    Value* params = findIn(&pass.value, "params");
+    if (params) removeFrom(*params, "previous");
+    if (params && params->members.empty()) removeFrom(pass.value, "params");
+    Value* inputs = findIn(&pass.value, "inputs");
+    Value *other = findIn(inputs, "other_gbuffer"), *samples = findIn(inputs, "others");
+    if (!other || !samples) return 0;
+    say(other->where, fmt::format("`{}` has no `other_gbuffer`: `reservoirs-motion` moves samples", type));
+    const Member gbuffer = newText("previous", other->string, *inputs);
+    const Member before = newText("samples", samples->string, *inputs);
+    if (!gbuffer.value.string.ends_with("@previous")) {  // of the same frame
+      removeFrom(*inputs, "other_gbuffer");
+      return 0;
+    }
+    const std::string name =
+        before.value.string.substr(0, before.value.string.find_first_of(".@")) + "-motion";
+    samples->string = name + ".reservoirs";
+    *std::ranges::find(inputs->members, "other_gbuffer", &Member::key) =
+        newText("moved", name + ".moved", *inputs);
+    if (findIn(&passes_, name)) return 0;
+    Member motion = newMember(name, Value::Type::Object, passes_);
+    motion.value.members.push_back(newText("type", "reservoirs-motion", motion.value));
+    motion.value.members.push_back(newMember("inputs", Value::Type::Object, motion.value));
+    motion.value.members.back().value.members = {gbuffer, before};
+    passes_.members.insert(passes_.members.begin() + static_cast<ptrdiff_t>(index), std::move(motion));
+    return 1;
+  }
+
   bool choosesRays(const Member& parameter) {
     const Value* value = valueOf(parameter.value);
     return std::ranges::count(kRayParameters, parameter.key) != 0 && !(value && value->isNumber());
@@ -268,9 +308,7 @@ class ToVersion2 {
   // Passes that were not told of materials took diffuse ones, whatever the scene.
   void keepDiffuse() {
     if (!silent_ || says_ || findIn(&document_, "extends") || findIn(&document_, "inputs")) return;
-    Member materials = newMember("materials", Value::Type::String, document_);
-    materials.value.string = kMaterialsOfPasses;
-    setView(materials);
+    setView(newText("materials", std::string(kMaterialsOfPasses), document_));
   }
 
   Value& document_;

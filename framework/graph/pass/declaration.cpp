@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "fovea/error.h"
@@ -16,6 +17,12 @@ ParameterSpec integer(int64_t defaultValue, int64_t min, int64_t max) {
   spec.defaultValue = defaultValue;
   spec.min = static_cast<double>(min);
   spec.max = static_cast<double>(max);
+  return spec;
+}
+
+ParameterSpec integer(int64_t defaultValue, std::initializer_list<int64_t> allowed) {
+  ParameterSpec spec = integer(defaultValue, std::min(allowed), std::max(allowed));
+  for (const int64_t value : allowed) spec.choices.push_back(std::to_string(value));
   return spec;
 }
 
@@ -131,107 +138,6 @@ const std::string& Parameters::text(std::string_view name) const {
   return std::get<std::string>(*value);
 }
 
-// ---- Sizes -------------------------------------------------------------------------------------------
-
-SizeExpr::SizeExpr(const SizeExpr& a, const SizeExpr& b, Op op) : terms_(a.terms_) {
-  terms_.insert(terms_.end(), b.terms_.begin(), b.terms_.end());
-  terms_.push_back({op, 0, {}});
-}
-
-namespace {
-
-struct Printed {
-  std::string text;
-  int strength;  // 3 for a leaf or call, 2 for a product, 1 for a sum
-};
-
-Printed printLeaf(const SizeExpr::Term& term) {
-  using Op = SizeExpr::Op;
-  switch (term.op) {
-    case Op::Constant:
-      return {std::to_string(term.constant), 3};
-    case Op::ViewWidth:
-      return {"view.width", 3};
-    case Op::ViewHeight:
-      return {"view.height", 3};
-    case Op::PortWidth:
-      return {term.name + ".width", 3};
-    case Op::PortHeight:
-      return {term.name + ".height", 3};
-    case Op::PortLayers:
-      return {term.name + ".layers", 3};
-    case Op::PortCount:
-      return {term.name + ".count", 3};
-    case Op::Wired:
-      return {"wired(" + term.name + ")", 3};
-    case Op::Read:
-      return {"read(" + term.name + ")", 3};
-    case Op::ParameterIs:
-      return {term.name + " == " + term.choice, 0};
-    default:
-      return {term.name, 3};
-  }
-}
-
-Printed printOperator(SizeExpr::Op op, const Printed& a, const Printed& b) {
-  using Op = SizeExpr::Op;
-  auto wrap = [](const Printed& p, int needed) { return p.strength < needed ? "(" + p.text + ")" : p.text; };
-  switch (op) {
-    case Op::Add:
-      return {a.text + " + " + b.text, 1};
-    case Op::Sub:
-      return {a.text + " - " + wrap(b, 2), 1};
-    case Op::Mul:
-      return {wrap(a, 2) + " * " + wrap(b, 2), 2};
-    case Op::Div:
-      return {wrap(a, 2) + " / " + wrap(b, 3), 2};
-    case Op::Min:
-      return {"min(" + a.text + ", " + b.text + ")", 3};
-    default:
-      return {"max(" + a.text + ", " + b.text + ")", 3};
-  }
-}
-
-}  // namespace
-
-std::string SizeExpr::print() const {
-  std::vector<Printed> stack;
-  for (const Term& term : terms_) {
-    if (term.op < Op::Add) {
-      stack.push_back(printLeaf(term));
-      continue;
-    }
-    const Printed b = std::move(stack.back());
-    stack.pop_back();
-    stack.back() = printOperator(term.op, stack.back(), b);
-  }
-  return stack.empty() ? std::string("1") : stack.back().text;
-}
-
-SizeExpr operator+(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Add}; }
-SizeExpr operator-(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Sub}; }
-SizeExpr operator*(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Mul}; }
-SizeExpr ceilDiv(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Div}; }
-SizeExpr min(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Min}; }
-SizeExpr max(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Max}; }
-SizeExpr viewWidth() { return {SizeExpr::Op::ViewWidth, std::string()}; }
-SizeExpr viewHeight() { return {SizeExpr::Op::ViewHeight, std::string()}; }
-SizeExpr parameter(std::string name) { return {SizeExpr::Op::Parameter, std::move(name)}; }
-SizeExpr widthOf(std::string port) { return {SizeExpr::Op::PortWidth, std::move(port)}; }
-SizeExpr heightOf(std::string port) { return {SizeExpr::Op::PortHeight, std::move(port)}; }
-SizeExpr layersOf(std::string port) { return {SizeExpr::Op::PortLayers, std::move(port)}; }
-SizeExpr countOf(std::string port) { return {SizeExpr::Op::PortCount, std::move(port)}; }
-SizeExpr environment(std::string name) { return {SizeExpr::Op::Environment, std::move(name)}; }
-SizeExpr wired(std::string port) { return {SizeExpr::Op::Wired, std::move(port)}; }
-SizeExpr isRead(std::string path) { return {SizeExpr::Op::Read, std::move(path)}; }
-SizeExpr is(std::string parameter, std::string choice) {
-  return SizeExpr(
-      std::vector<SizeExpr::Term>{{SizeExpr::Op::ParameterIs, 0, std::move(parameter), std::move(choice)}});
-}
-SizeExpr operator!(const SizeExpr& a) { return SizeExpr(1) - a; }
-SizeExpr operator&&(const SizeExpr& a, const SizeExpr& b) { return a * b; }
-SizeExpr operator||(const SizeExpr& a, const SizeExpr& b) { return max(a, b); }
-
 // ---- Resources ---------------------------------------------------------------------------------------
 
 ResourceSpec image2D(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr mips) {
@@ -344,6 +250,11 @@ PassDeclaration& PassDeclaration::parameter(std::string name, ParameterSpec spec
 
 PassDeclaration& PassDeclaration::counter(std::string name, std::string doc) {
   counters.push_back({std::move(name), std::move(doc)});
+  return *this;
+}
+
+PassDeclaration& PassDeclaration::require(SizeExpr condition, std::string message, std::string remedy) {
+  requirements.push_back({std::move(condition), std::move(message), std::move(remedy)});
   return *this;
 }
 

@@ -1,6 +1,7 @@
 #include "framework/graph/pass/evaluate.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fovea::graph {
 
@@ -8,6 +9,7 @@ std::optional<int64_t> wholeNumber(const Parameters& parameters, std::string_vie
   const Value* value = parameters.find(name);
   if (!value) return std::nullopt;
   if (const int64_t* number = std::get_if<int64_t>(value)) return *number;
+  if (const double* real = std::get_if<double>(value)) return static_cast<int64_t>(std::ceil(*real));
   if (const bool* flag = std::get_if<bool>(value)) return *flag;
   const std::string* chosen = std::get_if<std::string>(value);
   if (!chosen) return std::nullopt;
@@ -30,17 +32,29 @@ bool holds(const SizeExpr& condition, const Parameters& parameters) {
   return evaluate(condition, why, leaf).value_or(1) != 0;
 }
 
-int64_t quantityOf(const ResourceDesc& desc, SizeExpr::Op what) {
+namespace {
+
+// That size of a description or of a specification, whose members have the same names.
+template <class Size, class Resource>
+Size sizeOf(const Resource& resource, SizeExpr::Op what) {
   switch (what) {
     case SizeExpr::Op::PortWidth:
-      return desc.width;
+      return static_cast<Size>(resource.width);
     case SizeExpr::Op::PortHeight:
-      return desc.height;
+      return static_cast<Size>(resource.height);
     case SizeExpr::Op::PortLayers:
-      return desc.volume ? desc.depth : desc.layers;
+      return static_cast<Size>(resource.volume ? resource.depth : resource.layers);
     default:
-      return static_cast<int64_t>(desc.count);
+      return static_cast<Size>(resource.count);
   }
+}
+
+}  // namespace
+
+int64_t quantityOf(const ResourceDesc& desc, SizeExpr::Op what) { return sizeOf<int64_t>(desc, what); }
+
+const SizeExpr& expressionOf(const ResourceSpec& spec, SizeExpr::Op what) {
+  return sizeOf<const SizeExpr&>(spec, what);
 }
 
 bool applyOperator(SizeExpr::Op op, ExpressionStack& stack) {
@@ -60,6 +74,12 @@ bool applyOperator(SizeExpr::Op op, ExpressionStack& stack) {
       return true;
     case SizeExpr::Op::Min:
       a = std::min(a, b);
+      return true;
+    case SizeExpr::Op::Same:
+      a = a == b;
+      return true;
+    case SizeExpr::Op::AtMost:
+      a = a <= b;
       return true;
     default:
       a = std::max(a, b);

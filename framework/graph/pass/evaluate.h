@@ -11,7 +11,8 @@
 
 namespace fovea::graph {
 
-// A whole number; a flag counts as 0 or 1, a choice as its index. Nothing for other types and unknown names.
+// A whole number; a real one is rounded up, a flag counts as 0 or 1, a choice as its index. Nothing for texts and unknown
+// names.
 std::optional<int64_t> wholeNumber(const Parameters& parameters, std::string_view name);
 
 // Whether a condition over parameters alone is not 0.
@@ -19,6 +20,8 @@ bool holds(const SizeExpr& condition, const Parameters& parameters);
 
 // PortWidth, PortHeight, PortLayers (the depth of a volume) or PortCount of a resource.
 int64_t quantityOf(const ResourceDesc& desc, SizeExpr::Op what);
+// The expression of that size.
+const SizeExpr& expressionOf(const ResourceSpec& spec, SizeExpr::Op what);
 
 // Operands of an expression that is being evaluated.
 struct ExpressionStack {

@@ -50,9 +50,14 @@ class Parser {
   }
 
   SizeExpr all() {
-    SizeExpr value = sum();
-    while (take("&&")) value = value && sum();
+    SizeExpr value = comparison();
+    while (take("&&")) value = value && comparison();
     return value;
+  }
+
+  SizeExpr comparison() {
+    SizeExpr value = sum();
+    return take("<=") ? atMost(value, sum()) : value;
   }
 
   SizeExpr sum() {
@@ -159,15 +164,15 @@ class Parser {
       expect(")");
       return function == "wired" ? wired(port) : isRead(port);
     }
-    if (function != "min" && function != "max") {
-      fail(fmt::format("there is no function `{}`; there are min, max, wired and read", function));
+    if (function != "min" && function != "max" && function != "same") {
+      fail(fmt::format("there is no function `{}`; there are min, max, same, wired and read", function));
       return 1;
     }
     const SizeExpr a = either();
     expect(",");
     const SizeExpr b = either();
     expect(")");
-    return function == "min" ? min(a, b) : max(a, b);
+    return function == "min" ? min(a, b) : function == "max" ? max(a, b) : same(a, b);
   }
 
   std::string_view text_;

@@ -14,9 +14,9 @@ struct ExpressionError {
   size_t column = 0;    // from 0, in the text
 };
 
-// Grammar, weakest first:  a || b   a && b   name == choice, name != choice   a + b, a - b   a * b, a / b (rounds up)
+// Grammar, weakest first:  a || b   a && b   a <= b, name == choice, name != choice   a + b, a - b   a * b, a / b (rounds up)
 // !a   number, parameter, view.width, view.height, view.PARAMETER, scene.NAME, PORT.width (height, layers, count), min(a, b),
-// max(a, b), wired(PORT), read(PORT), (a). Returns 1 and fills `error` if the text is no expression.
+// max(a, b), same(a, b), wired(PORT), read(PORT), (a). Returns 1 and fills `error` if the text is not an expression.
 SizeExpr parseExpression(std::string_view text, ExpressionError& error);
 
 }  // namespace fovea::graph

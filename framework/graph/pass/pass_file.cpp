@@ -7,6 +7,7 @@
 #include <map>
 
 #include "framework/gpu/format.h"
+#include "framework/graph/pass/derive.h"
 #include "framework/graph/pass/expression.h"
 #include "framework/graph/pass/validate.h"
 
@@ -40,9 +41,9 @@ class Reader {
         diagnostics_(diagnostics),
         places_(std::make_shared<std::map<std::string, SourceLocation>>()) {}
 
-  PassDeclaration read(const json::Value& document) {
+  PassDeclaration read(const json::Value& document, PassKind kind) {
     const std::string name = file_.filename().string();
-    PassDeclaration d(name.substr(0, name.size() - kEnding.size()), "");
+    PassDeclaration d(name.substr(0, name.size() - kEnding.size()), "", kind);
     ObjectReader reader(document, "", diagnostics_);
     if (!document.isObject()) return d;
     places_->emplace("", document.where.location());
@@ -58,10 +59,12 @@ class Reader {
       for (const Member& m : params->members) readParameter(d, m);
     if (const json::Value* counters = reader.object("counters"))
       for (const Member& m : counters->members) readCounter(d, m);
-    if (const json::Value* steps = reader.require("steps")) readSteps(d, *steps);
+    if (const json::Value* requirements = reader.array("requires")) readRequirements(d, *requirements);
+    if (kind != PassKind::Host)
+      if (const json::Value* steps = reader.require("steps")) readSteps(d, *steps);
     reader.finish();
     d.places = places_;
-    deriveKind(d);
+    if (kind != PassKind::Host) deriveKind(d);
     deriveUsages(d);
     return d;
   }
@@ -289,6 +292,21 @@ class Reader {
             fmt::format("expected the counter's documentation, found {}", m.value.describe()));
   }
 
+  void readRequirements(PassDeclaration& d, const json::Value& requirements) {
+    for (size_t i = 0; i < requirements.items.size(); ++i) {
+      const json::Value& item = requirements.items[i];
+      const std::string path = fmt::format("requires[{}]", i);
+      place(path, item.where);
+      ObjectReader reader(item, path, diagnostics_);
+      if (!item.isObject()) continue;
+      reader.require("condition");
+      reader.require("otherwise");
+      SizeExpr condition = expressionAt(reader, "condition", 1);
+      d.require(std::move(condition), reader.text("otherwise"), reader.text("remedy"));
+      reader.finish();
+    }
+  }
+
   // ---- Steps -------------------------------------------------------------------------------------------
 
   void readSteps(PassDeclaration& d, const json::Value& steps) {
@@ -403,44 +421,6 @@ class Reader {
     }
   }
 
-  // ---- What the steps say about the ports --------------------------------------------------------------
-
-  static void deriveKind(PassDeclaration& d) {
-    bool compute = false, graphics = false;
-    for (const StepSpec& step : d.steps)
-      (step.action == StepSpec::Action::Fullscreen ? graphics : compute) = true;
-    d.kind = !graphics ? PassKind::Compute : compute ? PassKind::ComputeAndGraphics : PassKind::Graphics;
-  }
-
-  // A port without `usage` may be used in every way that is natural for its direction, and as the steps use it.
-  static void deriveUsages(PassDeclaration& d) {
-    for (PortSpec& port : d.ports)
-      for (MemberSpec& m : port.members)
-        if (m.usage == Usage::None) m.usage = usageOf(d, port, m, memberPath(port, m));
-  }
-
-  static Usage usageOf(const PassDeclaration& d, const PortSpec& port, const MemberSpec& m,
-                       const std::string& path) {
-    using Action = StepSpec::Action;
-    const bool image = m.resource.kind == ResourceKind::Image, reads = port.direction == Direction::Input,
-               scratch = port.direction == Direction::Scratch;
-    Usage usage = Usage::None;
-    bool attachment = false;
-    for (const StepSpec& step : d.steps) {
-      const bool target = std::find(step.targets.begin(), step.targets.end(), path) != step.targets.end();
-      attachment |= target && step.action == Action::Fullscreen;
-      if (target && step.action != Action::Fullscreen) usage = usage | Usage::TransferWrite;
-      if (step.action == Action::Copy && step.source == path) usage = usage | Usage::TransferRead;
-      if (step.tileMask == path) usage = usage | Usage::StorageRead;
-      if (step.sizing == StepSpec::Size::Indirect && step.sizePort == path) usage = usage | Usage::Indirect;
-    }
-    if (attachment) usage = usage | Usage::ColorAttachment;
-    if (reads) return usage | (image ? Usage::Sampled : Usage::StorageRead | Usage::TexelRead);
-    if (scratch) usage = usage | (image ? Usage::Sampled : Usage::TexelRead);
-    if (image && attachment) return usage;
-    return usage | Usage::StorageRead | Usage::StorageWrite;
-  }
-
   const fs::path& file_;
   Diagnostics& diagnostics_;
   std::shared_ptr<std::map<std::string, SourceLocation>> places_;
@@ -448,8 +428,15 @@ class Reader {
 
 }  // namespace
 
+PassDeclaration readHostPass(const json::Value& document, const std::string& type, Diagnostics& diagnostics) {
+  const fs::path file = type + std::string(kEnding);
+  PassDeclaration d = Reader(file, diagnostics).read(document, PassKind::Host);
+  if (!diagnostics.hasErrors()) validateDeclaration(d, diagnostics);
+  return d;
+}
+
 PassDeclaration readPassFile(const json::Value& document, const fs::path& file, Diagnostics& diagnostics) {
-  PassDeclaration d = Reader(file, diagnostics).read(document);
+  PassDeclaration d = Reader(file, diagnostics).read(document, PassKind::Compute);
   if (!diagnostics.hasErrors()) validateDeclaration(d, diagnostics);
   return d;
 }

@@ -16,6 +16,8 @@ namespace fovea::graph {
 // `diagnostics`, with their places; the declaration is of no use if there are any.
 PassDeclaration readPassFile(const json::Value& document, const std::filesystem::path& file,
                              Diagnostics& diagnostics);
+// The declaration of a pass on the CPU, which has no steps; hostPass() of the facade calls this.
+PassDeclaration readHostPass(const json::Value& document, const std::string& type, Diagnostics& diagnostics);
 // Also throws Error(BadInput) if the file cannot be read or is not JSON.
 PassDeclaration loadPassFile(const std::filesystem::path& file);
 

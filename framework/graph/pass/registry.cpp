@@ -87,6 +87,21 @@ void Registry::add(PassDeclaration declaration, Factory factory, std::string plu
                   {std::make_unique<PassDeclaration>(std::move(declaration)), factory, std::move(plugin)});
 }
 
+void Registry::addOrReplace(PassDeclaration declaration, Factory factory) {
+  const auto at = std::find_if(entries_.begin(), entries_.end(),
+                               [&](const Entry& e) { return e.declaration->type == declaration.type; });
+  if (at == entries_.end() || !at->replaceable) {
+    const std::string type = declaration.type;
+    add(std::move(declaration), std::move(factory));
+    const_cast<Entry*>(entry(type))->replaceable = true;
+    return;
+  }
+  validateDeclaration(declaration);
+  replaced_.push_back(
+      std::exchange(at->declaration, std::make_unique<PassDeclaration>(std::move(declaration))));
+  at->factory = std::move(factory);
+}
+
 const Registry::Entry* Registry::entry(std::string_view type) const {
   auto at = std::lower_bound(entries_.begin(), entries_.end(), type,
                              [](const Entry& e, std::string_view t) { return e.declaration->type < t; });

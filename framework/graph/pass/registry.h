@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -13,13 +14,15 @@ namespace fovea::graph {
 
 class Registry {
  public:
-  using Factory = std::unique_ptr<Pass> (*)();
+  using Factory = std::function<std::unique_ptr<Pass>()>;
   // With the passes that are linked in and those that the project declares in files.
   static Registry& global();
 
   // Throws Error(Internal) if the type is already registered or if the declaration contradicts itself (duplicate
   // names, a default out of range, a size that names an unknown parameter or port, ...).
   void add(PassDeclaration declaration, Factory factory);
+  // Adds a pass at any time, and replaces one that this function has added. Graphs that are bound to that stay valid.
+  void addOrReplace(PassDeclaration declaration, Factory factory);
   const PassDeclaration* find(std::string_view type) const;
   std::unique_ptr<Pass> create(std::string_view type) const;
   std::vector<std::string> types() const;  // sorted
@@ -54,7 +57,8 @@ class Registry {
   struct Entry {
     std::unique_ptr<PassDeclaration> declaration;  // stable address
     Factory factory;
-    std::string plugin;  // its file; empty for types that are linked in
+    std::string plugin;        // its file; empty for types that are linked in
+    bool replaceable = false;  // added by addOrReplace()
   };
   const Entry* entry(std::string_view type) const;
   void add(PassDeclaration declaration, Factory factory, std::string plugin);

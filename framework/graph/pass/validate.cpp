@@ -36,6 +36,10 @@ class Validator {
     names.clear();
     for (const CounterSpec& c : d_.counters)
       if (!names.insert(c.name).second) wrong(fmt::format("counter `{}` is declared twice", c.name));
+    for (size_t i = 0; i < d_.requirements.size(); ++i) {
+      path_ = fmt::format("requires[{}]", i);
+      checkRequirement(d_.requirements[i]);
+    }
     names.clear();
     for (const StepSpec& step : d_.steps) {
       if (!names.insert(step.name).second) wrong(fmt::format("step `{}` is declared twice", step.name));
@@ -141,6 +145,39 @@ class Validator {
     if (!makes) return;
     for (const SizeExpr* size : {&r.width, &r.height, &r.depth, &r.layers, &r.mips, &r.count})
       checkSize(*size, path);
+  }
+
+  void checkRequirement(const RequirementSpec& requirement) {
+    using Op = SizeExpr::Op;
+    if (requirement.message.empty()) wrong("a requirement does not say what is wrong without it");
+    for (const SizeExpr::Term& term : requirement.condition.terms()) {
+      if (term.op == Op::Constant || term.op == Op::ViewWidth || term.op == Op::ViewHeight ||
+          term.op >= Op::Add)
+        continue;
+      const ParameterSpec* p = findParameter(d_.parameters, term.name);
+      const bool known = term.op == Op::Parameter     ? p && p->type != ParameterSpec::Type::Text
+                         : term.op == Op::ParameterIs ? p && std::ranges::count(p->choices, term.choice) > 0
+                         : term.op == Op::Wired
+                             ? isInput(d_.findPort(term.name))
+                             : term.op <= Op::PortCount && findInput(term.name, term.op == Op::PortCount);
+      if (!known)
+        wrong(fmt::format("requirement `{}`: `{}` is no parameter, choice or size of an input",
+                          requirement.condition.print(), term.name));
+    }
+  }
+
+  static bool isInput(const PortSpec* port) {
+    return port && (port->direction == Direction::Input || port->direction == Direction::InOut);
+  }
+
+  // The image or buffer that an input, "surface.position", stands for.
+  const MemberSpec* findInput(const std::string& path, bool isBuffer) const {
+    for (const PortSpec& port : d_.ports)
+      for (const MemberSpec& m : port.members)
+        if (isInput(&port) && memberPath(port, m) == path &&
+            (m.resource.kind == ResourceKind::Buffer) == isBuffer)
+          return &m;
+    return nullptr;
   }
 
   // The parameter, if it is one that expressions can use.

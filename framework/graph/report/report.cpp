@@ -416,4 +416,8 @@ std::string planJson(const Plan& plan) {
   return json.dump(2) + "\n";
 }
 
+std::string writePlan(const Plan& plan, PlanForm form) {
+  return form == PlanForm::Text ? planText(plan) : form == PlanForm::Dot ? planDot(plan) : planJson(plan);
+}
+
 }  // namespace fovea::graph

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "fovea/document.h"
 #include "framework/graph/compile/plan.h"
 
 namespace fovea::graph {
@@ -14,6 +15,8 @@ std::string planText(const Plan& plan);
 std::string planDot(const Plan& plan);
 // The same facts as JSON, for programs.
 std::string planJson(const Plan& plan);
+
+std::string writePlan(const Plan& plan, PlanForm form);
 
 // "64x32 rgba16f", "128x128x1000 d32f (array)", "1000 x 64 B Light"
 std::string describe(const ResourceDesc& desc);

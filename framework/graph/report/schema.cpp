@@ -1,13 +1,17 @@
 #include "framework/graph/report/schema.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "framework/gpu/format.h"
+#include "framework/graph/compile/fitting.h"
 #include "framework/graph/migrate/migrate.h"
 #include "framework/graph/pass/validate.h"
+#include "framework/graph/report/settings.h"
 
 namespace fovea::graph {
 namespace {
@@ -53,8 +57,12 @@ Json parameterSchema(const ParameterSpec& spec) {
     else
       value[key] = limit;
   };
-  bound("minimum", spec.min);
-  bound("maximum", spec.max);
+  if (spec.type == ParameterSpec::Type::Int && !spec.choices.empty()) {
+    for (const std::string& allowed : spec.choices) value["enum"].push_back(std::stoll(allowed));
+  } else {
+    bound("minimum", spec.min);
+    bound("maximum", spec.max);
+  }
   Json schema = orParameter(std::move(value));
   schema["description"] = spec.unit.empty() ? spec.doc : fmt::format("{} [{}]", spec.doc, spec.unit);
   schema["default"] = std::move(fallback);
@@ -157,9 +165,116 @@ Json passSchema(const Registry& registry, const std::vector<std::string>& types,
   return pass;
 }
 
+// ---- Files that extend a known graph -----------------------------------------------------------------
+
+// Refuses references to graph parameters other than these.
+Json referencesTo(const std::vector<std::string>& names) {
+  const Json value{
+      {"anyOf", Json::array({{{"not", {{"type", "string"}}}},
+                             {{"pattern", fmt::format("^([^$]|$|\\$\\$|\\$(scene|device)\\.|\\$({})$)",
+                                                      fmt::join(names, "|"))}}})}};
+  const Json values{{"additionalProperties", value}};
+  return {{"properties",
+           {{"view", values},
+            {"passes",
+             {{"additionalProperties", {{"properties", {{"params", values}, {"parameters", values}}}}}}}}}};
+}
+
+// A pass that has no type of its own has that of the extended graph, which is one of these.
+Json changeOf(const std::vector<std::string>& types) {
+  Json choices = Json::array();
+  for (const std::string& type : types) choices.push_back({{"$ref", "#/definitions/pass-" + type}});
+  return {{"if", {{"$ref", "#/definitions/new"}}},
+          {"else", types.size() == 1 ? choices[0] : Json{{"anyOf", choices}}}};
+}
+
+// What a parameter reaches says what it may be.
+Json settingSchema(const Setting& setting, const Description& description) {
+  Json all = Json::array();
+  for (const PassDescription& pass : description.passes)
+    for (uint32_t i = 0; pass.type && i < pass.parameterCount; ++i) {
+      const ParameterDescription& given = description.parameters[pass.firstParameter + i];
+      if (given.from != setting.parameter) continue;
+      Json reference{{"$ref", fmt::format("#/definitions/pass-{}/properties/params/properties/{}",
+                                          pass.type->string, given.given->key)}};
+      if (std::find(all.begin(), all.end(), reference) == all.end()) all.push_back(std::move(reference));
+    }
+  if (all.empty() && setting.spec.type == ParameterSpec::Type::Choice)
+    return orParameter({{"enum", setting.spec.choices}});
+  return all.empty() ? Json::object() : all.size() == 1 ? all[0] : Json{{"allOf", std::move(all)}};
+}
+
+// Adds to `definitions` those of changes of passes.
+Json extensionSchema(const KnownGraph& graph, const Registry& registry, Json& definitions) {
+  const Description& description = graph.description;
+  Json passes = Json::object(), parameters = Json::object();
+  std::vector<std::string> names;
+  for (const Setting& setting : declaredSettings(description, registry)) {
+    if (!description.graphParameters[setting.parameter].target.empty()) continue;
+    names.push_back(setting.name);
+    parameters[setting.name] = settingSchema(setting, description);
+  }
+  for (const PassDescription& pass : description.passes) {
+    if (pass.name.find('/') != std::string::npos || !pass.type) continue;
+    std::vector<std::string> types;
+    if (pass.typeFrom)
+      for (const std::string& ending : typeEndings(description, registry, *pass.typeFrom))
+        types.push_back(startOfType(pass) + ending);
+    else
+      types.push_back(pass.type->string);
+    std::erase_if(types, [&](const std::string& type) { return !registry.find(type); });
+    if (types.empty()) continue;
+    const std::string name = "change-" + fmt::format("{}", fmt::join(types, "-or-"));
+    if (!definitions.contains(name)) definitions[name] = changeOf(types);
+    passes[pass.name] = {{"$ref", "#/definitions/" + name}};
+  }
+  for (const std::string& instance : description.instances) passes[instance] = Json::object();
+  return {
+      {"properties",
+       {{"parameters", {{"properties", std::move(parameters)}}},
+        {"passes",
+         {{"properties", std::move(passes)}, {"additionalProperties", {{"$ref", "#/definitions/new"}}}}}}},
+      // A file that adds no parameter can refer only to those that there are.
+      {"if", {{"properties", {{"parameters", {{"propertyNames", {{"enum", names}}}}}}}}},
+      {"then", referencesTo(names)}};
+}
+
+// The names by which other files extend a graph: from its folder and from the one above, with and without its ending.
+std::vector<std::string> namesOf(const KnownGraph& graph) {
+  const std::string bare = graph.name.substr(graph.name.rfind('/') + 1);
+  std::vector<std::string> names = {graph.name, graph.name + ".json"};
+  if (bare != graph.name) names.insert(names.end(), {bare, bare + ".json"});
+  return names;
+}
+
+void addExtensions(Json& schema, const Registry& registry, const std::vector<KnownGraph>& graphs) {
+  Json& definitions = schema["definitions"];
+  const auto has = [](const char* key) { return Json{{"required", Json::array({key})}}; };
+  definitions["new"] = {{"description", "a pass that is new, or replaced or removed as a whole"},
+                        {"anyOf", Json::array({Json{{"type", "null"}}, has("type"), has("graph")})}};
+  Json rules = Json::array();
+  rules.push_back({{"if", {{"not", {{"anyOf", Json::array({has("extends"), has("parameters")})}}}}},
+                   {"then", referencesTo({})}});
+  // Graphs with the same passes and parameters share a definition.
+  std::vector<std::pair<Json, std::vector<std::string>>> extensions;
+  for (const KnownGraph& graph : graphs) {
+    Json extension = extensionSchema(graph, registry, definitions);
+    auto at = std::find_if(extensions.begin(), extensions.end(),
+                           [&](const auto& e) { return e.first == extension; });
+    if (at == extensions.end())
+      at = extensions.insert(at, {std::move(extension), std::vector<std::string>()});
+    for (std::string& name : namesOf(graph)) at->second.push_back(std::move(name));
+  }
+  for (auto& [extension, names] : extensions) {
+    Json condition{{"properties", {{"extends", {{"enum", names}}}}}, {"required", Json::array({"extends"})}};
+    rules.push_back({{"if", std::move(condition)}, {"then", std::move(extension)}});
+  }
+  schema["allOf"] = std::move(rules);
+}
+
 }  // namespace
 
-std::string generateSchema(const Registry& registry) {
+std::string generateSchema(const Registry& registry, const std::vector<KnownGraph>& graphs) {
   Json definitions = Json::object();
   definitions["wire"] = {{"type", "string"},
                          {"pattern", "^[A-Za-z0-9_/-]+(\\.[A-Za-z0-9_-]+){0,2}(@previous)?$"},
@@ -191,6 +306,7 @@ std::string generateSchema(const Registry& registry) {
         {"additionalProperties",
          {{"anyOf", Json::array({{{"$ref", "#/definitions/wire"}}, {{"type", "null"}}})}}}}}};
   schema["definitions"] = std::move(definitions);
+  addExtensions(schema, registry, graphs);
   return schema.dump(2) + "\n";
 }
 
@@ -294,6 +410,11 @@ std::string passFileSchema() {
        {"scratch", portSchema(output)},
        {"params", mapOf(parameter)},
        {"counters", mapOf(text)},
+       {"requires", described("what has to hold of parameters, wires and the sizes of inputs",
+                              {{"type", "array"},
+                               {"items", objectOf({{"condition", {{"$ref", "#/definitions/expression"}}},
+                                                   {"otherwise", described("what is wrong if it is 0", text)},
+                                                   {"remedy", text}})}})},
        {"steps", {{"type", "array"}, {"minItems", 1}, {"items", stepSchema()}}}});
   schema["$schema"] = "http://json-schema.org/draft-07/schema#";
   schema["title"] = "fovea pass";
@@ -303,7 +424,7 @@ std::string passFileSchema() {
       {"description",
        "a whole number, or an expression over parameters, view.width, PORT.width, PORT.count, wired(PORT), + "
        "- * / (rounds "
-       "up), min, max, ==, !=, !, && and ||"}};
+       "up), min, max, same, ==, !=, <=, !, && and ||"}};
   return schema.dump(2) + "\n";
 }
 

@@ -1,6 +1,7 @@
 // When a graph is edited while it runs, the executor of the new plan takes over everything that the edit did not
 // change.
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "framework/graph/run/frame_slot.h"
@@ -21,7 +22,7 @@ bool sameMemory(const BoundResource& a, const BoundResource& b) {
          x.usage == y.usage;
 }
 
-const PassInstance* findPass(const PassInstances& passes, const std::string& name) {
+PassInstance* findPass(const PassInstances& passes, const std::string& name) {
   for (const auto& pass : passes)
     if (pass->bound->name == name) return pass.get();
   return nullptr;
@@ -38,19 +39,6 @@ bool writes(const PassInstance& pass, uint32_t resource) {
                      [&](const Access& a) { return a.writes && a.resource == resource; });
 }
 
-// Whether the same passes with the same shaders write a resource in both plans.
-bool sameWriters(const PassInstances& passes, uint32_t resource, const PassInstances& before, uint32_t old) {
-  size_t count = 0, countBefore = 0;
-  for (const auto& pass : before) countBefore += writes(*pass, old) ? 1 : 0;
-  for (const auto& pass : passes) {
-    if (!writes(*pass, resource)) continue;
-    ++count;
-    const PassInstance* same = findPass(before, pass->bound->name);
-    if (!same || !writes(*same, old) || !sameKernels(*pass, *same)) return false;
-  }
-  return count == countBefore;
-}
-
 bool sameShape(const ResourceDesc& a, const ResourceDesc& b) {
   return a.kind == b.kind && a.format == b.format && a.width == b.width && a.height == b.height &&
          a.depth == b.depth && a.layers == b.layers && a.mips == b.mips && a.stride == b.stride &&
@@ -61,29 +49,120 @@ bool sameValues(const Parameters& a, const Parameters& b) {
   return std::ranges::equal(a.values(), b.values());
 }
 
-// Whether nothing about a pass has changed: its parameters and those of the view, and what its ports are wired to.
+const BoundResource& resourceOf(const PassInstance& pass, const Access& access) {
+  return pass.state->plan->graph->resources[access.resource];
+}
+
+// Whether nothing about a pass has changed: its parameters, its shaders, and what its ports are wired to.
 bool sameInstance(const PassInstance& a, const PassInstance& b) {
-  return a.bound->declaration == b.bound->declaration &&
+  return a.bound->declaration == b.bound->declaration && sameKernels(a, b) &&
          sameValues(a.bound->parameters, b.bound->parameters) &&
-         sameValues(a.state->plan->graph->view, b.state->plan->graph->view) &&
          std::equal(a.bound->accesses.begin(), a.bound->accesses.end(), b.bound->accesses.begin(),
                     b.bound->accesses.end(), [&](const Access& m, const Access& n) {
-                      return m.port == n.port && m.member == n.member && sameShape(a.desc(m), b.desc(n));
+                      return m.port == n.port && m.member == n.member && m.previous == n.previous &&
+                             resourceOf(a, m).name == resourceOf(b, n).name &&
+                             sameShape(a.desc(m), b.desc(n));
                     });
+}
+
+// Each pass with its predecessor, where nothing about it has changed.
+using Unchanged = std::map<const PassInstance*, PassInstance*>;
+
+Unchanged unchangedPasses(const PassInstances& passes, const PassInstances& before) {
+  Unchanged unchanged;
+  for (const auto& pass : passes) {
+    PassInstance* old = findPass(before, pass->bound->name);
+    if (old && sameInstance(*pass, *old)) unchanged.emplace(pass.get(), old);
+  }
+  return unchanged;
+}
+
+// Whether the same passes with the same shaders write a resource in both plans. What is kept for the scene was made once,
+// so the parameters of its writers must be the same, too; a history continues when they change.
+bool sameWriters(const PassInstances& passes, uint32_t resource, const PassInstances& before, uint32_t old,
+                 const Unchanged& unchanged) {
+  const bool kept = passes.front()->state->plan->graph->resources[resource].lifetime == Lifetime::Scene;
+  size_t count = 0, countBefore = 0;
+  for (const auto& pass : before) countBefore += writes(*pass, old) ? 1 : 0;
+  for (const auto& pass : passes) {
+    if (!writes(*pass, resource)) continue;
+    ++count;
+    const PassInstance* same = findPass(before, pass->bound->name);
+    if (!same || !writes(*same, old) || !sameKernels(*pass, *same)) return false;
+    if (kept && !unchanged.contains(pass.get())) return false;
+  }
+  return count == countBefore;
+}
+
+NameMap<std::set<std::string>> writersByResource(const PassInstances& passes) {
+  NameMap<std::set<std::string>> writers;
+  for (const auto& pass : passes)
+    for (const Access& access : pass->bound->accesses)
+      if (access.writes) writers[resourceOf(*pass, access).name].insert(pass->bound->name);
+  return writers;
+}
+
+// Of the passes that have not changed, those whose inputs come from such passes only.
+Unchanged undisturbedPasses(Unchanged unchanged, const PassInstances& passes, const PassInstances& before) {
+  const NameMap<std::set<std::string>> writers = writersByResource(passes), old = writersByResource(before);
+  std::set<std::string> disturbed;  // resources
+  for (const auto& [name, of] : writers)
+    if (const auto found = old.find(name); found == old.end() || found->second != of) disturbed.insert(name);
+  const auto disturb = [&](const PassInstance& pass) {
+    for (const Access& access : pass.bound->accesses)
+      if (access.writes) disturbed.insert(resourceOf(pass, access).name);
+  };
+  for (const auto& pass : passes)
+    if (!unchanged.contains(pass.get())) disturb(*pass);
+  // What a pass reads of the previous frame may come from one after it.
+  for (bool more = true; more;) {
+    more = false;
+    for (const auto& pass : passes) {
+      const bool reached = std::ranges::any_of(pass->bound->accesses, [&](const Access& access) {
+        return disturbed.contains(resourceOf(*pass, access).name);
+      });
+      if (!reached || unchanged.erase(pass.get()) == 0) continue;
+      disturb(*pass);
+      more = true;
+    }
+  }
+  return unchanged;
 }
 
 bool lasts(const BoundResource& resource) {
   return !resource.external && (resource.history || resource.lifetime != Lifetime::Transient);
 }
 
-// What a pass on the CPU remembers lies in its object, which has no ties to an executor.
-void adoptHostPass(PassInstance& pass, const PassInstances& before) {
-  if (pass.bound->declaration->kind != PassKind::Host) return;
-  for (const auto& old : before) {
-    if (old->bound->name != pass.bound->name || !sameInstance(pass, *old)) continue;
-    std::swap(pass.pass, old->pass);
-    pass.fresh = false;
-  }
+// Whether a pass keeps what it accesses: not where it reads what others make of the scene.
+bool keeps(const PassInstance& pass, const Access& access) {
+  const BoundResource& resource = resourceOf(pass, access);
+  return lasts(resource) && (access.writes || resource.history || resource.lifetime != Lifetime::Scene);
+}
+
+bool sameHeaps(const Plan& a, const Plan& b) {
+  return std::ranges::equal(a.heaps, b.heaps,
+                            [](const Plan::Heap& m, const Plan::Heap& n) {
+                              return m.bytes == n.bytes && m.memoryTypeBits == n.memoryTypeBits;
+                            }) &&
+         std::ranges::equal(a.placements, b.placements, [&](const Placement& m, const Placement& n) {
+           return m.heap == n.heap && m.offset == n.offset && m.resource == n.resource &&
+                  sameMemory(a.graph->resources[m.resource], b.graph->resources[n.resource]);
+         });
+}
+
+// Transient resources have no contents to keep, but the first frame in new memory pays for its pages.
+void adoptHeaps(ExecutorState& state, ExecutorState& before) {
+  if (!sameHeaps(*state.plan, *before.plan)) return;
+  std::swap(state.heaps, before.heaps);
+  for (const Placement& placement : state.plan->placements)
+    std::swap(state.resources[placement.resource], before.resources[placement.resource]);
+}
+
+// What a pass on the CPU remembers lies in its object, which has no ties to an executor. Views are among its parameters.
+void adoptHostPass(PassInstance& pass, PassInstance& old) {
+  if (!sameValues(pass.state->plan->graph->view, old.state->plan->graph->view)) return;
+  std::swap(pass.pass, old.pass);
+  pass.fresh = false;
 }
 
 }  // namespace
@@ -103,12 +182,16 @@ void adoptResources(ExecutorState& state, PassInstances& passes, ExecutorState& 
   for (uint32_t i = 0; i < graphBefore.resources.size(); ++i)
     if (before.plan->resourceLive[i] && lasts(graphBefore.resources[i]))
       known.emplace(graphBefore.resources[i].name, i);
+  adoptHeaps(state, before);
+  const Unchanged unchanged = unchangedPasses(passes, passesBefore),
+                  undisturbed = undisturbedPasses(unchanged, passes, passesBefore);
   for (uint32_t i = 0; i < graph.resources.size(); ++i) {
     const BoundResource& resource = graph.resources[i];
     const auto found = known.find(resource.name);
     if (!state.plan->resourceLive[i] || !lasts(resource) || found == known.end()) continue;
     const uint32_t old = found->second;
-    if (!sameMemory(resource, graphBefore.resources[old]) || !sameWriters(passes, i, passesBefore, old))
+    if (!sameMemory(resource, graphBefore.resources[old]) ||
+        !sameWriters(passes, i, passesBefore, old, unchanged))
       continue;
     const std::array<VkImageLayout, 2> layouts = before.plan->startLayout[old];
     // Without a layout, an image has no contents to keep.
@@ -122,11 +205,17 @@ void adoptResources(ExecutorState& state, PassInstances& passes, ExecutorState& 
   for (const auto& pass : passes) {
     uint32_t lasting = 0, adopted = 0;
     for (const Access& access : pass->bound->accesses) {
-      lasting += lasts(graph.resources[access.resource]) ? 1 : 0;
+      if (!keeps(*pass, access)) continue;
+      ++lasting;
       adopted += state.adopted[access.resource] ? 1 : 0;
     }
     pass->fresh = lasting == 0 || adopted < lasting;
-    if (adopted == lasting) adoptHostPass(*pass, passesBefore);
+    if (adopted < lasting) continue;
+    if (const auto old = undisturbed.find(pass.get()); old != undisturbed.end())
+      pass->memory = std::move(old->second->memory);
+    if (const auto old = unchanged.find(pass.get());
+        old != unchanged.end() && pass->bound->declaration->kind == PassKind::Host)
+      adoptHostPass(*pass, *old->second);
   }
 }
 

@@ -79,6 +79,7 @@ RecordContext::RecordContext(PassInstance& pass, VkCommandBuffer cmd, const scen
 gpu::Device& RecordContext::device() const { return *pass_.state->device; }
 const scene::View& RecordContext::view() const { return frame_.views[pass_.viewIndex]; }
 bool RecordContext::firstFrame() const { return pass_.firstFrame(); }
+std::any& RecordContext::remembered() { return pass_.memory; }
 static std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
 static void requireKind(const PassInstance& pass, const Access& access, std::string_view port,

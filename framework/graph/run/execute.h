@@ -19,7 +19,6 @@
 namespace fovea::gpu {
 class Device;
 class ShaderCompiler;
-struct ReflectedMember;
 }  // namespace fovea::gpu
 namespace fovea::scene {
 struct Frame;
@@ -57,8 +56,8 @@ struct Observation {
   bool operator==(const Observation&) const = default;
 };
 
-// What an element of a buffer consists of, by the name of its type (ResourceSpec::element).
-using ElementTypes = std::map<std::string, std::vector<gpu::ReflectedMember>>;
+// The fields of the elements of buffers, by the name of their type (ResourceSpec::element).
+using ElementTypes = std::map<std::string, std::vector<RecordField>>;
 
 // The device memory that a bound resource needs; input to the aliasing phase.
 MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource);
@@ -86,7 +85,9 @@ class Executor {
   //
   // It takes over from the executor `before`, if there is one: pipelines that both need, and kept and history resources
   // with their contents. These must have the same name, size and lifetime in both plans, and the passes that write
-  // them the same name, type and shaders. A host pass of which nothing has changed keeps what it remembers. `before`
+  // them the same name, type and shaders, and the same parameters for what is kept for the scene. What passes remember
+  // (RecordContext::memory) is taken over where nothing that leads to it has changed. A host pass of which nothing has
+  // changed keeps what it remembers. `before`
   // must belong to the same device and scene, and its frames must have been returned. It is of no use afterwards,
   // unless this constructor throws.
   Executor(gpu::Device& device, std::shared_ptr<const Plan> plan, const Registry& registry,

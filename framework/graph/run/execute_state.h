@@ -1,6 +1,7 @@
 // Internal to the executor: the state of passes, kernels and resources while a plan runs.
 #pragma once
 
+#include <any>
 #include <array>
 #include <deque>
 #include <functional>
@@ -163,7 +164,8 @@ struct PassInstance {
   uint64_t operationsOffset = 0;     // the same, of the number of its operations
   std::vector<HostStaging> staging;  // host passes: one per access
   HostSteps host;                    // steps that run there, of other passes
-  bool fresh = true;                 // nothing that it keeps was taken over
+  bool fresh = true;                 // not all that it keeps was taken over
+  std::any memory;                   // RecordContext::memory
   uint32_t viewIndex = 0;            // index into Frame::views, this frame
   uint32_t viewOffset = 0;           // of that view in the shared set's dynamic uniform buffer
 

@@ -72,6 +72,7 @@ VkExtent3D PassContext::extent(std::string_view port) const {
 
 uint32_t PassContext::layers(std::string_view port) const { return descOf(graph_, bound_, port).layers; }
 uint32_t PassContext::mips(std::string_view port) const { return descOf(graph_, bound_, port).mips; }
+const ResourceDesc& PassContext::desc(std::string_view port) const { return descOf(graph_, bound_, port); }
 uint64_t PassContext::count(std::string_view port) const { return descOf(graph_, bound_, port).count; }
 
 int64_t PassContext::evaluate(const SizeExpr& expression) const {

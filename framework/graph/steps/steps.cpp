@@ -310,7 +310,8 @@ std::vector<PlannedStep> planSteps(const BoundGraph& graph, const BoundPass& pas
     step.before = tracker.before(step.accesses, steps[i].together);
     planned.push_back(std::move(step));
   }
-  if (pass.declaration->places && planned.size() == steps.size()) checkPorts(pass, used);
+  const bool declaredInFile = pass.declaration->places && pass.declaration->kind != PassKind::Host;
+  if (declaredInFile && planned.size() == steps.size()) checkPorts(pass, used);
   return planned;
 }
 

@@ -126,7 +126,7 @@ struct Copy {
 
 class Checker {
  public:
-  Checker(const Plan& plan, const CheckOptions& options)
+  Checker(const Plan& plan, const PlanCheckOptions& options)
       : plan_(plan), graph_(*plan.graph), options_(options) {}
 
   std::vector<std::string> run() {
@@ -172,7 +172,7 @@ class Checker {
 
   const Plan& plan_;
   const BoundGraph& graph_;
-  const CheckOptions& options_;
+  const PlanCheckOptions& options_;
   int64_t frame_ = 0;
   std::vector<std::string> problems_;
   std::set<std::string> said_;
@@ -486,7 +486,7 @@ void Checker::playEnd() {
 
 }  // namespace
 
-std::vector<std::string> checkPlan(const Plan& plan, const CheckOptions& options) {
+std::vector<std::string> checkPlan(const Plan& plan, const PlanCheckOptions& options) {
   return Checker(plan, options).run();
 }
 

@@ -10,7 +10,7 @@
 
 namespace fovea::graph {
 
-struct CheckOptions {
+struct PlanCheckOptions {
   uint32_t frames = 4;  // at least 3, so that both copies of a history resource are used
   MemoryTable memory;   // the table that the plan was made with; estimateMemory if empty
 };
@@ -23,6 +23,6 @@ struct CheckOptions {
 //   version or frame
 // - memory that is too small, misaligned, outside its heap, or given to resources that must not share it
 // - passes that are missing, run twice, or run although they are culled
-std::vector<std::string> checkPlan(const Plan& plan, const CheckOptions& options = {});
+std::vector<std::string> checkPlan(const Plan& plan, const PlanCheckOptions& options = {});
 
 }  // namespace fovea::graph

@@ -10,6 +10,7 @@
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <memory>
@@ -36,11 +37,14 @@ struct ParameterSpec {
   Value defaultValue;
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
+  // What a choice can be. Of a whole number or a flag, as text: the only values that it can have; empty if it can have
+  // every value in its range.
   std::vector<std::string> choices;
   std::string unit;
 };
 
 ParameterSpec integer(int64_t defaultValue, int64_t min, int64_t max);
+ParameterSpec integer(int64_t defaultValue, std::initializer_list<int64_t> allowed);
 ParameterSpec real(double defaultValue, double min, double max, std::string unit = {});
 ParameterSpec flag(bool defaultValue);
 ParameterSpec choice(std::string defaultValue, std::vector<std::string> choices);
@@ -105,7 +109,9 @@ class SizeExpr {
     Mul,
     Div /* rounds up */,
     Min,
-    Max
+    Max,
+    Same,   // 1 if the two are equal, else 0
+    AtMost  // 1 if the first is not greater than the second, else 0
   };
   struct Term {
     Op op;
@@ -142,9 +148,12 @@ SizeExpr countOf(std::string port);
 // Each is at least 1.
 SizeExpr environment(std::string name);
 SizeExpr wired(std::string port);  // 1 if an optional input is wired, else 0
-// Conditions, for steps only.
-SizeExpr isRead(std::string path);  // whether another pass or the next frame reads this output
+// Conditions, for steps and requirements.
+SizeExpr isRead(
+    std::string path);  // for steps only: whether another pass or the next frame reads this output
 SizeExpr is(std::string parameter, std::string choice);  // whether a parameter has this choice
+SizeExpr same(const SizeExpr& a, const SizeExpr& b);     // a == b
+SizeExpr atMost(const SizeExpr& a, const SizeExpr& b);   // a <= b
 SizeExpr operator!(const SizeExpr& a);
 SizeExpr operator&&(const SizeExpr& a, const SizeExpr& b);
 SizeExpr operator||(const SizeExpr& a, const SizeExpr& b);
@@ -251,6 +260,15 @@ struct CounterSpec {
   std::string name, doc;
 };
 
+// What has to hold of a pass in a graph: of its parameters, of which inputs are wired, and of their sizes. It is checked
+// when the graph is bound, and values of parameters that contradict it are not offered to users.
+struct RequirementSpec {
+  // 0 if it does not hold. Real parameters are rounded up. What is over the size of an input that is not wired holds.
+  SizeExpr condition;
+  std::string message;  // what is wrong then: "show `age` needs the input `state`"
+  std::string remedy;   // "wire `state`, or show something else"
+};
+
 // ---- Steps -----------------------------------------------------------------------------------------------------
 
 class Commands;
@@ -335,7 +353,9 @@ struct PassDeclaration {
   std::vector<ParameterSpec> parameters;
   std::vector<CounterSpec> counters;
   std::vector<StepSpec> steps;
-  // For a pass that is declared in a file: the locations of "", "ports.NAME", "params.NAME" and "steps.NAME" in it.
+  std::vector<RequirementSpec> requirements;
+  // For a pass that is declared in a file: the locations of "", "ports.NAME", "params.NAME", "steps.NAME" and
+  // "requires[INDEX]" in it.
   std::shared_ptr<const std::map<std::string, SourceLocation>> places;
 
   PassDeclaration& view() {
@@ -359,6 +379,7 @@ struct PassDeclaration {
   PortSpec& inout(std::string name, std::string bundle, std::vector<MemberSpec> members, std::string doc);
   PassDeclaration& parameter(std::string name, ParameterSpec spec, std::string doc);
   PassDeclaration& counter(std::string name, std::string doc);
+  PassDeclaration& require(SizeExpr condition, std::string message, std::string remedy);
   StepSpec& step(std::string computeShader);
   // Writes every pixel of images of one size (ports or members declared with Usage::ColorAttachment, in the order of
   // the shader's outputs). On a CPU device, a store to a storage image costs several times as much as such an output.

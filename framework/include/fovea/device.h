@@ -61,6 +61,9 @@ struct ExistingDevice {
 // enabled, Vulkan 1.3, or operations of the queue.
 std::shared_ptr<Device> openDevice(const ExistingDevice& existing, const DeviceOptions& options = {});
 
+// Shaders that are compiled from now on are read from their files again.
+void rereadShaders(Device& device);
+
 // "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6", then what it was told to do without; part of every report.
 std::string nameOf(const Device& device);
 

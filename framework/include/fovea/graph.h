@@ -6,8 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,6 +29,15 @@ struct ResourceDesc {
   uint32_t stride = 0;
   uint64_t count = 0;   // a buffer has stride * count bytes
   std::string element;  // element type of a buffer
+};
+
+// A number, a vector or another part of the elements of a buffer, as shaders declare it.
+struct RecordField {
+  std::string
+      name;  // "start.position" in a struct inside the element; "" if the element is a number or a vector
+  uint32_t offset = 0, bytes = 0;
+  enum class Type { Int, Uint, Float, Other } type = Type::Other;  // scalar or vector element type
+  uint32_t components = 1;  // all elements of a matrix or a tightly packed array
 };
 
 // Times in milliseconds. `gpuMs` is the time between the timestamps around the pass; `cpuMs` is the time spent on
@@ -79,5 +91,19 @@ void loadPlugin(const std::filesystem::path& file);
 
 // Adds the passes declared by the files NAME.pass.json in a folder. Throws Error(BadInput) with every mistake.
 void addPasses(const std::filesystem::path& folder);
+// Declares the passes of such files anew whose text has changed, for sessions and parameters that are set from now on.
+// Throws as addPasses() does; the passes of wrong files stay as they were.
+void rereadPasses();
+
+// Adds a pass whose objects `make` returns. One that was added in this way before is replaced for sessions made and
+// parameters set from now on. Throws Error(Internal) if the declaration contradicts itself or belongs to another pass.
+void addPass(PassDeclaration declaration, std::function<std::unique_ptr<Pass>()> make);
+
+// The declaration of a pass on the CPU (PassKind::Host): what NAME.pass.json holds, without steps. `source` is the
+// name of the text in messages. Throws Error(BadInput) with every mistake.
+PassDeclaration hostPass(const std::string& type, std::string_view json, const std::string& source);
+
+// Every pass type that the process knows, sorted. The declarations stay valid.
+std::vector<const PassDeclaration*> passTypes();
 
 }  // namespace fovea::graph

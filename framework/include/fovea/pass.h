@@ -7,6 +7,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <any>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -37,6 +38,7 @@ namespace fovea::graph {
 
 struct BoundGraph;
 struct BoundPass;
+struct ResourceDesc;  // defined in fovea/graph.h
 struct PlannedStep;
 
 // ---- Kernels and contexts --------------------------------------------------------------------------------------
@@ -89,6 +91,7 @@ class PassContext {
   uint32_t layers(std::string_view port) const;
   uint32_t mips(std::string_view port) const;
   uint64_t count(std::string_view port) const;  // number of elements in a buffer
+  const ResourceDesc& desc(std::string_view port) const;
   // Conditions are 0 or 1; the sizes of an input that is not wired are 0.
   // Throws Error(BadInput) on overflow and division by zero.
   int64_t evaluate(const SizeExpr& expression) const;
@@ -181,7 +184,17 @@ class RecordContext : public PassContext {
   const scene::Frame& frame() const { return frame_; }
   const scene::View& view() const;  // the view that the graph file assigns to this pass
   uint64_t frameNumber() const { return frameNumber_; }
-  bool firstFrame() const;                         // kept and history resources were just zeroed
+  bool firstFrame() const;  // kept and history resources were just zeroed
+  // What the pass remembers from frame to frame, such as whether it has voxelised what never moves; always of the same
+  // type. It begins as T(), and does so again together with what the pass keeps for the scene. It goes on in the next
+  // plan if neither the pass nor any pass from which its inputs come has changed. A member of the pass would begin anew
+  // with each plan.
+  template <class T>
+  T& memory() {
+    std::any& memory = remembered();
+    if (!memory.has_value()) memory.emplace<T>();
+    return *std::any_cast<T>(&memory);
+  }
   gpu::Image& image(std::string_view port) const;  // "radiance" or "surface.position"
   gpu::Buffer& buffer(std::string_view port) const;
 
@@ -212,6 +225,7 @@ class RecordContext : public PassContext {
 
  private:
   friend class Commands;
+  std::any& remembered();
   Commands start(uint32_t index);
   void runStep(uint32_t index);
   PassInstance& pass_;

@@ -458,6 +458,17 @@ struct LoadOptions {
 // Error(BadInput) with file, place and remedy; for a missing model the message also says where to get it.
 Scene load(const std::string& nameOrFile, Diagnostics& warnings, const LoadOptions& options = {});
 
+// A camera at a point that looks at another one, neither of them at the other's place.
+Camera lookAt(glm::vec3 position, glm::vec3 target, glm::vec3 up = {0, 1, 0});
+
+// The bare names that load() knows, sorted: built-in scenes, and scene files of the project.
+std::vector<std::string> names();
+
+// Makes a scene that a program has put together ready for a session. Primitives without normals get smooth ones, those
+// without texture coordinates zeros, and `hash` that of all. Throws Error(BadInput) with every mistake: no triangle, no
+// material or no camera, lists of different lengths, numbers of things that are not there, or what is not finite.
+void complete(Scene& scene);
+
 // Names of the built-in scenes, sorted. These scenes are generated in code, deterministically, and register
 // themselves as passes do.
 std::vector<std::string> builtinNames();

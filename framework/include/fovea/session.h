@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "fovea/device.h"
+#include "fovea/document.h"
 #include "fovea/error.h"
 #include "fovea/graph.h"
 #include "fovea/image.h"
@@ -44,6 +46,7 @@ struct FrameOptions {
   std::optional<scene::Camera> camera;  // world space, relative to Scene::origin; metres and radians
   std::optional<glm::vec2> gaze;        // of all views; normalised image coordinates, origin top-left
   bool cut = false;                     // shows something unrelated to the last frame: history begins anew
+  bool read = true;                     // whether what Session::read() chooses is read back, which takes time
 };
 
 class Session {
@@ -52,7 +55,9 @@ class Session {
   // names and in a folder `passes` beside the graph; passes in C++ are those that were registered before. The scene must
   // outlive the session. Throws Error(BadInput) with every mistake of the graph, Error(Usage) for an impossible size or
   // parameter, and as gpu::openDevice() does.
-  Session(const std::string& graph, const scene::Scene& scene, const SessionOptions& options = {});
+  Session(const std::string& graph, const scene::Scene& scene, const SessionOptions& options = {})
+      : Session(Document::load(graph), scene, options) {}
+  Session(const Document& graph, const scene::Scene& scene, const SessionOptions& options = {});
   ~Session();
 
   // Renders a frame and waits until it is finished. Motion is relative to the frame that was rendered last, whatever
@@ -84,6 +89,12 @@ class Session {
   // A floating-point or normalised image as read back. Throws Error(Usage) for one that was not read back and
   // Error(Internal) for an integer format.
   image::Image picture(const FrameResult& frame, const std::string& name) const;
+  // What an element of a buffer consists of, by the name of its type (ResourceDesc::element), as the shaders of the
+  // graph declare it. Empty for types that they know only as texels.
+  std::vector<RecordField> fields(const std::string& element) const;
+  std::map<std::string, ResourceDesc> inputs() const;  // what setInput() fills
+  std::vector<std::string> outputs() const;            // of the graph
+  std::string plan(PlanForm form) const;
   const std::string& passName(uint32_t pass) const;  // PassTiming::pass
   const std::shared_ptr<gpu::Device>& device() const;
   const Diagnostics& warnings() const;  // about the graph as it is now

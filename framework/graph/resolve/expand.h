@@ -1,6 +1,7 @@
 // Internal to resolve: scopes, and what the functions that expand them share.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <map>
@@ -10,17 +11,12 @@
 #include <unordered_map>
 #include <vector>
 
-#include "framework/graph/compile/resolve.h"
+#include "framework/graph/resolve/resolve.h"
 
 namespace fovea::graph::detail {
 
 // One graph document in use: the whole graph, or a sub-graph under a prefix.
 struct Scope {
-  struct Parameter {
-    const json::Member* declared = nullptr;  // in its document
-    ParameterDescription value;
-    bool used = false;
-  };
   struct Input {
     const json::Member* declared = nullptr;
     bool optional = false;
@@ -34,11 +30,14 @@ struct Scope {
   std::filesystem::path file;
   const json::Value* document = nullptr;
   std::optional<std::string_view> view;
-  std::vector<Parameter> parameters;
+  std::vector<uint32_t> parameters;  // Description::graphParameters
   std::vector<Input> inputs;
   std::map<std::string, Scope*, std::less<>> instances;
+  std::vector<std::string> broken;  // passes, instances and inputs with a mistake that has been reported
 
-  Parameter* findParameter(std::string_view name);
+  bool isBroken(std::string_view name) const {
+    return std::find(broken.begin(), broken.end(), name) != broken.end();
+  }
   Input* findInput(std::string_view name);
 };
 
@@ -46,6 +45,9 @@ struct Scope {
 // JSON.
 inline constexpr uint64_t kMaxGraphBytes = uint64_t(8) << 20;  // kMaxPasses of 800 bytes each
 json::Value readGraphFile(const std::filesystem::path& file, Diagnostics& diagnostics);
+// What to do where no file of this name is found beside `from` or in the search paths.
+std::string graphFileRemedy(const std::string& name, const std::filesystem::path& from,
+                            const std::vector<std::filesystem::path>& searchPaths);
 
 struct Expansion {
   struct PendingOverride {
@@ -69,6 +71,8 @@ struct Expansion {
   std::pmr::monotonic_buffer_resource memory = {};
   std::pmr::unordered_map<std::string, uint32_t> passes{&memory};
   std::vector<PendingOverride> overrides = {};
+  std::map<size_t, std::vector<std::string>> missed =
+      {};           // by Description::removals: what needs what is gone
   size_t made = 0;  // number of passes and scopes
   bool full = false;
 };
@@ -80,6 +84,9 @@ inline void report(Expansion& all, const Scope& scope, const json::Value& value,
                    std::string remedy = {}) {
   report(all, scope, value.where, value, std::move(message), std::move(remedy));
 }
+// The place of `value` in the document of the scope, such as "passes.a.inputs.b".
+std::string pathOf(const Scope& scope, const json::Value& value);
+// "did you mean `x`?", or else which names there are.
 std::string nearestRemedy(std::string_view word, const std::vector<std::string>& names);
 
 // The target of overrides of what belongs to the frame: "view.materials".
@@ -88,8 +95,21 @@ inline constexpr std::string_view kViewTarget = "view";
 // Names of passes, parameters and inputs consist of letters, digits, _ and -.
 bool isName(std::string_view name);
 
+// Whether what is missing at this place of the scope's document was removed by a `null` that is nearer to the user than
+// `by`, the place that refers to it. If so, bind() reports the `null` once for all such places; `who` names this one.
+bool blameRemoval(Expansion& all, const Scope& scope, const std::string& path, const json::Position& by,
+                  std::string who);
+
+// parameters.cpp: of the graph, of sub-graphs and of the command line.
+void readOverrides(Expansion& all);
+// Declares the parameters of a scope: with their defaults, with what the parent gives, or as the command line says.
+void readParameters(Expansion& all, Scope& scope, const json::Value* given);
 // Reads a literal or "$name". False after a mistake, which is reported.
 bool readScalar(Expansion& all, Scope& scope, const json::Value& value, ParameterDescription& out);
+// Appends to `list` the values of an object, or those that overrides of `target` put in their place or beside them.
+void readValues(Expansion& all, Scope& scope, std::vector<ParameterDescription>& list,
+                const json::Value* values, std::string_view target);
+void reportUnusedParameters(Expansion& all);
 
 // inputs.cpp: of the whole graph, and of a sub-graph whose parent gives `wires`
 void readRootInputs(Expansion& all, Scope& scope);

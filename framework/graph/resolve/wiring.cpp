@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "framework/graph/compile/expand.h"
+#include "framework/graph/resolve/expand.h"
 
 namespace fovea::graph::detail {
 namespace {
@@ -42,12 +42,20 @@ WireParts split(std::string_view text) {
 
 bool resolveWire(Expansion& all, Scope& scope, const json::Value& value, WireDescription& wire, int depth);
 
+// Keeps the part of the wire that is nearest to the user.
+void passThrough(const Expansion& all, const Scope& scope, const json::Value& part, WireDescription& wire) {
+  if (layerOf(all.description, part.where) >= layerOf(all.description, wire.where())) return;
+  wire.nearest = &part;
+  wire.nearestPath = pathOf(scope, part);
+}
+
 bool resolveInput(Expansion& all, Scope& scope, const json::Value& value, const WireParts& parts,
                   WireDescription& wire, int depth) {
   Scope::Input* input = parts.count > 1 ? scope.findInput(parts.port()) : nullptr;
   if (!input && parts.count == 1 && scope.inputs.size() == 1) input = &scope.inputs[0];
   if (!input) {
     std::vector<std::string> names;
+    if (scope.isBroken(value.string.substr(0, value.string.find('@')))) return false;
     for (const Scope::Input& i : scope.inputs) names.push_back("inputs." + i.declared->key);
     report(all, scope, value, fmt::format("the graph has no input `{}`", value.string),
            nearestRemedy(value.string, names));
@@ -56,6 +64,8 @@ bool resolveInput(Expansion& all, Scope& scope, const json::Value& value, const 
   input->used = true;
   wire.external = input->external;
   if (!scope.parent) return true;
+  if (input->wire) passThrough(all, *scope.parent, *input->wire, wire);
+  wire.open = !input->wire && input->optional;
   return input->wire && resolveWire(all, *scope.parent, *input->wire, wire, depth + 1);
 }
 
@@ -77,6 +87,7 @@ bool resolveInstance(Expansion& all, Scope& scope, Scope& child, const json::Val
            nearestRemedy(value.string, names));
     return false;
   }
+  passThrough(all, child, found->value, wire);
   // An output that is no text is reported with the outputs.
   return found->value.isString() && resolveWire(all, child, found->value, wire, depth + 1);
 }
@@ -111,7 +122,7 @@ void reportNoPass(Expansion& all, const Scope& scope, const json::Value& value, 
   report(all, scope, value, fmt::format("no pass `{}`", name), nearestRemedy(name, names));
 }
 
-// False if there is nothing to wire, because of a mistake (which is reported) or because an optional input is open.
+// False if there is nothing to wire: because of a mistake, which is reported, or because an optional input is open.
 bool resolveWire(Expansion& all, Scope& scope, const json::Value& value, WireDescription& wire, int depth) {
   const auto mistake = [&](std::string message, std::string remedy = {}) {
     report(all, scope, value, std::move(message), std::move(remedy));
@@ -141,7 +152,10 @@ bool resolveWire(Expansion& all, Scope& scope, const json::Value& value, WireDes
   if (const auto child = scope.instances.find(name); child != scope.instances.end())
     return resolveInstance(all, scope, *child->second, value, parts, wire, depth) &&
            combine(all, scope, value, parts.member(), previous, wire);
-  reportNoPass(all, scope, value, name);
+  // A name that matches nothing may contain dots.
+  if (scope.isBroken(name) || scope.isBroken(value.string.substr(0, value.string.find('@')))) return false;
+  if (!blameRemoval(all, scope, fmt::format("passes.{}", name), value.where, pathOf(scope, value)))
+    reportNoPass(all, scope, value, name);
   return false;
 }
 
@@ -177,7 +191,8 @@ void resolveWires(Expansion& all) {
     if (!inputs) continue;
     for (const json::Member& input : inputs->members) {
       WireDescription wire{&input};
-      if (input.value.isString() && resolveWire(all, *scope, input.value, wire, 0)) wires.push_back(wire);
+      wire.broken = !input.value.isString() || !resolveWire(all, *scope, input.value, wire, 0);
+      if (!wire.open) wires.push_back(wire);
     }
     pass.inputCount = static_cast<uint32_t>(wires.size()) - pass.firstInput;
   }

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "framework/graph/compile/compile.h"
-#include "framework/graph/compile/expand.h"
 #include "framework/graph/migrate/migrate.h"
+#include "framework/graph/resolve/expand.h"
 
 namespace fovea::graph {
 namespace {
@@ -16,7 +16,7 @@ using json::Member;
 bool replacesWhole(const json::Value& base, const json::Value& patch) {
   for (const char* key : {"type", "graph"}) {
     const json::Value* now = patch.find(key);
-    if (!now) continue;
+    if (!now || now->isNull()) continue;
     const json::Value* before = base.find(key);
     if (!before || before->string != now->string) return true;
   }
@@ -25,15 +25,22 @@ bool replacesWhole(const json::Value& base, const json::Value& patch) {
 
 class Merger {
  public:
-  explicit Merger(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+  Merger(Diagnostics& diagnostics, std::vector<Removal>* removals)
+      : diagnostics_(diagnostics), removals_(removals) {}
 
   // depth 0 is the document, 1 for instance its "passes", 2 one pass.
   void merge(json::Value& base, const json::Value& patch, const std::string& path, int depth, bool inPasses) {
     if (!patch.isObject()) {
+      if (base.isObject() && isNeeded(path, depth, inPasses))
+        return diagnostics_.error(patch.where.location(), path,
+                                  fmt::format("expected an object, found {}", patch.describe()));
       base = patch;
       return;
     }
     if (!base.isObject() || (inPasses && depth == 2 && replacesWhole(base, patch))) {
+      if (removals_)
+        std::erase_if(*removals_,
+                      [&](const Removal& removal) { return removal.path.starts_with(path + "."); });
       base = json::Value();
       base.type = json::Value::Type::Object;
     }
@@ -47,6 +54,8 @@ class Merger {
         continue;
       }
       const bool passes = depth == 0 ? member.key == "passes" : inPasses;
+      if (removals_)  // what a file between had removed is there again
+        std::erase_if(*removals_, [&](const Removal& removal) { return removal.path == memberPath; });
       Member& target = at != base.members.end() ? *at : base.members.emplace_back(Member{member.key, {}, {}});
       target.keyWhere = member.keyWhere;
       merge(target.value, member.value, memberPath, depth + 1, passes);
@@ -58,6 +67,7 @@ class Merger {
               const std::string& path) {
     if (at != base.members.end()) {
       base.members.erase(at);
+      if (removals_) removals_->push_back({nullptr, path, member.value.where});
       return;
     }
     std::vector<std::string> names;
@@ -68,7 +78,14 @@ class Merger {
                        nearest.empty() ? std::string() : fmt::format("did you mean `{}`?", nearest));
   }
 
+  // Whether nothing but an object can be in the place of one: in parts of a graph, passes and parts of passes.
+  static bool isNeeded(std::string_view path, int depth, bool inPasses) {
+    constexpr std::string_view kParts[] = {"parameters", "inputs", "view", "passes", "outputs"};
+    return inPasses ? depth <= 3 : std::ranges::find(kParts, path) != std::end(kParts);
+  }
+
   Diagnostics& diagnostics_;
+  std::vector<Removal>* removals_;
 };
 
 std::filesystem::path canonicalPath(const std::filesystem::path& file) {
@@ -77,63 +94,77 @@ std::filesystem::path canonicalPath(const std::filesystem::path& file) {
   return ec ? file : path;
 }
 
-using Document = std::shared_ptr<const json::Value>;
+void requireObject(const json::Value& document, Diagnostics& diagnostics) {
+  if (document.isObject()) return;
+  diagnostics.error(document.where.location(), {},
+                    fmt::format("a graph is an object, this is {}", document.describe()));
+  diagnostics.throwIfErrors();
+}
 
 // `chain` holds the files on the way from the first document to this one.
-Document mergeChain(Document document, const std::filesystem::path& file, const LoadOptions& options,
-                    Diagnostics& diagnostics, std::vector<std::filesystem::path>& chain) {
-  const json::Value* extends = document->find("extends");
-  if (!extends) return document;
-  const auto mistake = [&](std::string message, std::string remedy = {}) {
+void mergeChain(Merged& merged, const std::filesystem::path& file, const LoadOptions& options,
+                Diagnostics& diagnostics, std::vector<std::filesystem::path>& chain) {
+  const json::Value* extends = merged.document->find("extends");
+  if (!extends) return;
+  const auto stop = [&](std::string message, std::string remedy = {}) {
     diagnostics.error(extends->where.location(), "extends", std::move(message), std::move(remedy));
-    return document;
+    diagnostics.throwIfErrors();
   };
-  if (!extends->isString())
-    return mistake(fmt::format("expected a file name, found {}", extends->describe()));
+  if (!extends->isString()) stop(fmt::format("expected a file name, found {}", extends->describe()));
   const std::filesystem::path base = findGraphFile(extends->string, file, options.searchPaths);
   if (base.empty())
-    return mistake(fmt::format("no graph file `{}`", extends->string),
-                   fmt::format("it is looked up beside {} and in the search paths", file.string()));
+    stop(fmt::format("no graph file `{}`", extends->string),
+         detail::graphFileRemedy(extends->string, file, options.searchPaths));
   chain.push_back(canonicalPath(file));
   if (std::find(chain.begin(), chain.end(), canonicalPath(base)) != chain.end())
-    return mistake(fmt::format("`{}` extends itself", extends->string),
-                   "a base must not extend what extends it");
-  Document extended;
-  try {
-    extended = std::make_shared<const json::Value>(detail::readGraphFile(base, diagnostics));
-  } catch (const Error& error) {
-    for (const Diagnostic& d : error.diagnostics()) diagnostics.add(d);
-    return document;
-  }
-  if (!extended->isObject()) {
-    diagnostics.error(extended->where.location(), {},
-                      fmt::format("expected an object, found {}", extended->describe()));
-    return document;
-  }
-  extended = mergeChain(std::move(extended), base, options, diagnostics, chain);
-  return std::make_shared<const json::Value>(mergeDocuments(*extended, *document, diagnostics));
+    stop(fmt::format("`{}` extends itself", extends->string), "a base must not extend what extends it");
+  auto read = [&] {
+    try {
+      return std::make_shared<const json::Value>(detail::readGraphFile(base, diagnostics));
+    } catch (const Error& error) {
+      for (const Diagnostic& d : error.diagnostics()) diagnostics.add(d);
+      diagnostics.throwIfErrors();
+      throw;
+    }
+  };
+  const std::shared_ptr<const json::Value> patch = merged.document;
+  merged.document = read();
+  merged.files.push_back(merged.document->where.file);
+  requireObject(*merged.document, diagnostics);
+  mergeChain(merged, base, options, diagnostics, chain);
+  merged.document = std::make_shared<const json::Value>(
+      mergeDocuments(*merged.document, *patch, diagnostics, &merged.removals));
 }
 
 }  // namespace
 
-json::Value mergeDocuments(json::Value base, const json::Value& patch, Diagnostics& diagnostics) {
-  Merger(diagnostics).merge(base, patch, {}, 0, false);
+json::Value mergeDocuments(json::Value base, const json::Value& patch, Diagnostics& diagnostics,
+                           std::vector<Removal>* removals) {
+  Merger(diagnostics, removals).merge(base, patch, {}, 0, false);
   return base;
 }
 
-std::shared_ptr<const json::Value> mergeExtends(std::shared_ptr<const json::Value> document,
-                                                const std::filesystem::path& file, const LoadOptions& options,
-                                                Diagnostics& diagnostics) {
-  if (!document->isObject()) {
-    diagnostics.error(document->where.location(), {},
-                      fmt::format("a graph is an object, this is {}", document->describe()));
-    json::Value empty;
-    empty.type = json::Value::Type::Object;
-    empty.where = document->where;
-    return std::make_shared<const json::Value>(std::move(empty));
-  }
+Merged mergeExtends(std::shared_ptr<const json::Value> document, const std::filesystem::path& file,
+                    const LoadOptions& options, Diagnostics& diagnostics) {
+  requireObject(*document, diagnostics);
+  Merged merged{std::move(document), {}, {}};
+  merged.files.push_back(merged.document->where.file);
   std::vector<std::filesystem::path> chain;
-  return mergeChain(std::move(document), file, options, diagnostics, chain);
+  mergeChain(merged, file, options, diagnostics, chain);
+  for (Removal& removal : merged.removals) removal.document = merged.document.get();
+  return merged;
+}
+
+Removal* findRemoval(std::vector<Removal>& removals, const json::Value* document, std::string_view path) {
+  for (Removal& removal : removals)
+    if (removal.document == document && (path == removal.path || path.starts_with(removal.path + ".")))
+      return &removal;
+  return nullptr;
+}
+
+int layerOf(const Description& description, const json::Position& where) {
+  const auto at = std::find(description.files.begin(), description.files.end(), where.file);
+  return at == description.files.end() ? -1 : static_cast<int>(at - description.files.begin());
 }
 
 std::filesystem::path findGraphFile(const std::string& name, const std::filesystem::path& from,
@@ -157,20 +188,45 @@ std::filesystem::path findGraph(const std::string& nameOrPath,
   for (const std::string& name : {nameOrPath, nameOrPath + ".json"})
     if (std::filesystem::is_regular_file(name, ec)) return name;
   const std::filesystem::path name(nameOrPath);
-  std::vector<std::string> known, looked;
+  std::vector<std::filesystem::path> folders = {{}};
+  std::vector<std::string> looked;
   for (const std::filesystem::path& folder : searchPaths) {
     looked.push_back(folder.string());
     if (name.is_absolute()) continue;
     for (const std::string& file : {nameOrPath, nameOrPath + ".json"})
       if (std::filesystem::is_regular_file(folder / file, ec)) return folder / file;
-    for (std::filesystem::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec))
-      if (at->path().extension() == ".json") known.push_back(at->path().stem().string());
+    folders.push_back(folder);
   }
-  const std::string nearest = nearestName(name.stem().string(), known);
+  const std::string nearest = nearestGraphFile(nameOrPath, folders);
   throw Error(ExitCode::BadInput, fmt::format("no graph `{}`", nameOrPath),
               !nearest.empty() ? fmt::format("did you mean `{}`?", nearest)
               : looked.empty() ? std::string("give the path of a graph file")
                                : fmt::format("it is no file, and not in {}", fmt::join(looked, ", ")));
+}
+
+std::string nearestGraphFile(const std::string& name, const std::vector<std::filesystem::path>& folders) {
+  // With or without its ending, as the name itself is.
+  const bool ending = name.ends_with(".json");
+  const std::filesystem::path parent = std::filesystem::path(name).parent_path();
+  std::vector<std::string> known;
+  std::error_code ec;
+  for (const std::filesystem::path& folder : folders) {
+    const std::filesystem::path in = folder / parent;
+    for (std::filesystem::directory_iterator at(in.empty() ? "." : in, ec), end; !ec && at != end;
+         at.increment(ec))
+      if (at->path().extension() == ".json" && !at->path().stem().has_extension())
+        known.push_back((parent / (ending ? at->path().filename() : at->path().stem())).string());
+  }
+  return nearestName(name, known);
+}
+
+std::string detail::graphFileRemedy(const std::string& name, const std::filesystem::path& from,
+                                    const std::vector<std::filesystem::path>& searchPaths) {
+  std::vector<std::filesystem::path> folders = {from.parent_path()};
+  folders.insert(folders.end(), searchPaths.begin(), searchPaths.end());
+  const std::string nearest = nearestGraphFile(name, folders);
+  if (!nearest.empty()) return fmt::format("did you mean `{}`?", nearest);
+  return fmt::format("it is looked up beside {} and in the search paths", from.string());
 }
 
 json::Value detail::readGraphFile(const std::filesystem::path& file, Diagnostics& diagnostics) {
@@ -190,7 +246,7 @@ json::Value loadMerged(const std::string& nameOrPath, const LoadOptions& options
   const std::filesystem::path file = findGraph(nameOrPath, options.searchPaths);
   Diagnostics diagnostics;
   auto document = std::make_shared<const json::Value>(detail::readGraphFile(file, diagnostics));
-  json::Value merged = *mergeExtends(std::move(document), file, options, diagnostics);
+  json::Value merged = *mergeExtends(std::move(document), file, options, diagnostics).document;
   diagnostics.throwIfErrors();
   std::erase_if(merged.members, [](const json::Member& member) { return member.key == "extends"; });
   return merged;

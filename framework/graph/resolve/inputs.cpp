@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "framework/gpu/format.h"
-#include "framework/graph/compile/expand.h"
+#include "framework/graph/resolve/expand.h"
 
 namespace fovea::graph::detail {
 
@@ -23,9 +23,9 @@ int64_t readSize(Expansion& all, Scope& scope, json::ObjectReader& reader, const
     if (readTyped(number.string, json::Value::Type::Int, typed)) number = typed;
   }
   if (number.isInt() && number.integer >= 1 && number.integer <= int64_t(1) << 31) return number.integer;
-  report(all, scope, *value,
+  report(all, scope, size.value->where, *value,
          fmt::format("`{}`: expected a whole number from 1 to {}, found {}", key, int64_t(1) << 31,
-                     value->describe()));
+                     number.describe()));
   return fallback;
 }
 
@@ -112,10 +112,19 @@ void readRootInputs(Expansion& all, Scope& scope) {
       report(all, scope, member.keyWhere, member.value,
              fmt::format("`{}` is no name for an input", member.key), "letters, digits, _ and -");
     json::ObjectReader reader(member.value, json::joinPath("inputs", member.key), all.diagnostics);
-    if (!member.value.isObject()) continue;
+    if (!member.value.isObject()) {
+      scope.broken.push_back("inputs." + member.key);
+      continue;
+    }
     std::vector<ExternalDescription>& externals = all.description.externals;
+    const size_t before = all.diagnostics.list().size();
+    ExternalDescription external = readExternal(all, scope, member, reader);
+    if (all.diagnostics.list().size() > before) {
+      scope.broken.push_back("inputs." + member.key);
+      continue;
+    }
     scope.inputs.push_back({&member, false, false, nullptr, static_cast<uint32_t>(externals.size())});
-    externals.push_back(readExternal(all, scope, member, reader));
+    externals.push_back(std::move(external));
   }
 }
 
