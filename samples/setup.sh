@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that building, testing and running fovea need; only those that are missing.
+# Installs the Debian packages that building, testing and running fovea need; only those that are missing. For the
+# module for Python it makes an environment with packages of the Python package index, in $XDG_CACHE_HOME/fovea-python.
 #   samples/setup.sh          install
 #   samples/setup.sh --list   print the package names
 set -euo pipefail
 
 packages=(
   # building
-  ccache cmake g++ ninja-build pkg-config python3
+  ccache cmake g++ ninja-build pkg-config python3 python3-dev python3-venv
   # Vulkan: headers and loader, a driver that renders on the CPU, validation layers
   libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
   # shaders: GLSL to SPIR-V, reflection
@@ -19,10 +20,12 @@ packages=(
   libcivetweb-dev libturbojpeg0-dev
   # images without OpenImageIO, for the preset `portable`
   libpng-dev libstb-dev libtinyexr-dev
+  # captures of frames
+  librenderdoc-dev
   # tests and benchmarks
   clang-16 libclang-rt-16-dev clang-format clang-tidy libgtest-dev libgmock-dev libbenchmark-dev
   python3-jsonschema python3-matplotlib python3-numpy
-  chromium chromium-driver python3-selenium
+  chromium chromium-driver python3-selenium fish zsh
 )
 
 fail() {
@@ -36,6 +39,22 @@ case "${1:-}" in
   *) fail "unknown argument $1; usage: samples/setup.sh [--list]" ;;
 esac
 
+# Made anew when its list of packages has changed. Without a network, the module and its tests are left out.
+makePythonEnvironment() {
+  local list environment
+  list=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/framework/python/requirements.txt
+  environment=${XDG_CACHE_HOME:-$HOME/.cache}/fovea-python
+  if cmp -s "$list" "$environment/requirements.txt"; then return; fi
+  echo "setup: installing packages for Python into $environment"
+  if /usr/bin/python3 -m venv --clear "$environment" &&
+    "$environment/bin/pip" install --quiet --disable-pip-version-check -r "$list"; then
+    cp "$list" "$environment/requirements.txt"
+  else
+    rm -rf "$environment"
+    echo "setup: the packages for Python cannot be installed (no network?): the module for Python is left out" >&2
+  fi
+}
+
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   fail "this is no Debian system (there is no dpkg or apt-get)." \
        "fovea is built and tested on Debian 12; elsewhere install what these packages hold:" "${packages[*]}"
@@ -47,6 +66,7 @@ for package in "${packages[@]}"; do
   [ "$status" = installed ] || missing+=("$package")
 done
 if [ ${#missing[@]} -eq 0 ]; then
+  makePythonEnvironment
   exit 0
 fi
 
@@ -69,3 +89,4 @@ apt=("${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::
 "${apt[@]}" update || echo "setup: the package lists could not be renewed (no network?), trying with the old ones" >&2
 "${apt[@]}" install -y --no-install-recommends "${missing[@]}" >/dev/null ||
   fail "apt-get could not install: ${missing[*]}" "Its messages above say why: a missing network, a full disk, another release than Debian 12."
+makePythonEnvironment
