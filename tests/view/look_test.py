@@ -11,7 +11,7 @@ import subprocess
 import sys
 import unittest
 
-from viewer import ViewTest, read_exr  # before selenium, which may be missing
+from viewer import ViewTest, read_exr, read_ppm  # before selenium, which may be missing
 
 from selenium.webdriver.common.action_chains import ActionChains
 
@@ -57,14 +57,58 @@ class Look(ViewTest):
         # The pixel that the page tells.
         self.choose("#source", "radiance")
         self.wait(lambda: self.find("#canvas").get_attribute("data-source") == "radiance", "the radiance")
-        canvas = self.find("#canvas")
-        ActionChains(self.driver).move_to_element(canvas).perform()
-        text = self.wait(lambda: self.find("#pixel").text, "the pixel")
-        place, *values = text.split("   ")
-        x, y = map(int, place.split(","))
-        _, _, words = viewer.pixels("radiance", x, y)
-        told = struct.unpack("<4I", struct.pack("<4f", *map(float, values)))
-        self.assertEqual(told, words)
+        for keys, wanted in (("0", (33, 20)), ("+++++++", (30, 35)), ("++++++", (31, 34)), ("0--------", (40, 12))):
+            for key in keys:
+                self.press(key)
+            left, top, scale = self.script(
+                "const b = document.getElementById('canvas').getBoundingClientRect();"
+                "const s = document.getElementById('stage').getBoundingClientRect();"
+                "return [b.left - s.left - s.width / 2, b.top - s.top - s.height / 2, b.width / 64]")
+            at = [round(a + scale * (w + 0.5)) for a, w in zip((left, top), wanted)]
+            ActionChains(self.driver).move_to_element_with_offset(self.find("#stage"), *at).perform()
+            place = f"{wanted[0]}, {wanted[1]}"
+            text = self.wait(lambda: (t := self.find("#pixel").text).startswith(place) and t, f"pixel {place} at {scale}")
+            told = struct.unpack("<3I", struct.pack("<3f", *map(float, text.split("   ")[1:4])))
+            first = 3 * (wanted[1] * 64 + wanted[0])
+            self.assertEqual(told, truth[first:first + 3], (place, scale))
+
+    @unittest.skipUnless(shutil.which("oiiotool"), "needs oiiotool")
+    def test_a_still_picture_is_shown_to_the_last_bit(self):
+        """Where coloured squares of a compression would be taken for light."""
+        for graph, size, arguments in (("ir_1000", "320x240", ("--frames", 2)), ("direct", "512x384", ())):
+            viewer = self.view(graph, *arguments, size=size, scene="cornellbox_moving")
+            self.open(viewer)
+            if not arguments:
+                self.wait(lambda: self.find("#canvas").get_attribute("data-exact") == "false", "a compressed picture")
+                viewer.control(playing=False)  # frames go on
+            self.wait(lambda: self.find("#canvas").get_attribute("data-exact") == "true", "the pixels")
+            viewer.control(frozen=True)
+            self.wait(lambda: self.script("return import('./store.js').then((m) => m.store.tick.frozen)"), "rest")
+            status, _, body = viewer.request("picture.png?source=image")
+            self.assertEqual(status, 200)
+            (self.folder / "truth.png").write_bytes(body)
+            truth = read_ppm(self.folder / "truth.png")
+            shown = lambda: bytes(v for i, v in enumerate(self.canvas()) if i % 4 != 3)
+            self.wait(lambda: shown() == truth, "the same pixels")
+            # On the screen, too, a pixel of the picture is a square of one colour, be it a little larger than the
+            # screen's or much.
+            width, height = map(int, size.split("x"))
+            for keys, least, most in (("", 1, 2), ("-" if self.scale() > 1.5 else "+", 1.1, 1.9), (9 * "+", 4, 64)):
+                for key in keys:
+                    self.press(key)
+                scale = self.scale()
+                self.assertTrue(least <= scale <= most, scale)
+                left, top = self.script("const b = document.getElementById('canvas').getBoundingClientRect();"
+                                        "return [b.left, b.top]")
+                self.driver.save_screenshot(str(self.folder / "screen.png"))
+                screen, across = read_ppm(self.folder / "screen.png"), self.script("return innerWidth")
+                for dx, dy in ((-9, 10), (-8, 10), (0, 1), (7, 5)):
+                    x, y = width // 2 + dx, height // 2 + dy
+                    u, v = int(left + scale * (x + 0.5)), int(top + scale * (y + 0.5))
+                    at, of = 3 * (v * across + u), 3 * (y * width + x)
+                    self.assertEqual(screen[at:at + 3], truth[of:of + 3], (x, y, scale))
+            self.driver.get("about:blank")  # the page must not ask a program that has ended
+            viewer.close()
 
     def test_every_port_that_is_made_can_be_seen(self):
         viewer = self.view("ours", "--set", "vpl_count=64", "--frames", 2, "--validation", size="64x64")
@@ -94,8 +138,36 @@ class Look(ViewTest):
         red = changes(lambda: self.choose("#channel", "red"), "one channel")
         middle = 4 * (32 * 64 + 5)
         self.assertEqual(len(set(red[middle:middle + 3])), 1)
-        false = changes(lambda: self.find("#false-color").click(), "false colours")
+        false = changes(lambda: self.choose("#map", "helix"), "false colours")
         self.assertTrue(any(len(set(false[i:i + 3])) > 1 for i in range(0, len(false), 100)))
+
+    def test_signed_numbers_are_blue_white_and_red_by_themselves(self):
+        (self.folder / "passes").mkdir()
+        self.write("passes/slope.pass.json", {
+            "doc": "Rises from -1 to 3.",
+            "outputs": {"slope": {"doc": "from left to right", "format": "r32f", "usage": ["storage_write"]}},
+            "steps": [{"shader": "slope.comp", "over": "slope"}]})
+        self.write("passes/slope.comp", """layout(local_size_x = 8, local_size_y = 8) in;
+layout(r32f) uniform writeonly image2D slope;
+void main() {
+  ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+  imageStore(slope, p, vec4(float(p.x) / 16.0 - 1.0));
+}
+""")
+        graph = self.write("slope.json", {"passes": {"slope": {"type": "slope"}}, "outputs": {"image": "slope"}})
+        viewer = self.view(graph, "--frames", 2, size="64x64")
+        self.open(viewer)
+        at = lambda x: self.canvas()[4 * (32 * 64 + x):][:3]
+        red, green, blue = at(0)
+        self.assertTrue(red < green < blue, (red, green, blue))
+        self.assertGreater(min(at(16)), 240)
+        red, green, blue = at(63)
+        self.assertTrue(red > 100 > blue > green, (red, green, blue))
+        self.wait(lambda: self.find("#legend").is_displayed(), "the legend")
+        self.assertEqual(self.find("#legend").text.split(), ["-2.938", "0", "2.938"])
+        self.choose("#map", "plain")
+        self.wait(lambda: len(set(at(63))) == 1, "grey")
+        self.assertFalse(self.find("#legend").is_displayed())
 
     def test_nan_and_infinity_are_marked_and_counted(self):
         (self.folder / "passes").mkdir()
@@ -128,7 +200,7 @@ void main() {
         self.open(viewer)
         pairs = [("text", ground) for ground in ("ground", "panel", "tint", "wrong-ground")]
         pairs += [("soft", ground) for ground in ("ground", "panel", "stage", "wrong-ground")]
-        pairs += [("accent", "panel"), ("accent", "tint"), ("wrong", "panel")]
+        pairs += [("accent", "panel"), ("accent", "tint"), ("wrong", "panel"), ("text", "bar"), ("on-accent", "accent")]
 
         def luminance(colour):
             levels = [int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]

@@ -107,12 +107,6 @@ class Understand(ViewTest):
         self.wait(lambda: any(cell.text for cell in self.find_all("#timings td.delta")),
             "a comparison with the baseline")
 
-    def test_the_plan_shows_every_resource(self):
-        viewer = self.view("direct")
-        self.open(viewer)
-        self.find("#plan-panel summary").click()
-        self.assertEqual(len(self.find_all("#plan rect")), len(viewer.state()["graph"]["plan"]["resources"]))
-
 
 class Change(ViewTest):
     def test_a_parameter_changes_the_picture_and_the_saved_graph(self):
@@ -209,6 +203,11 @@ class Change(ViewTest):
         self.assertEqual(viewer.state()["set"], ["vpl_count=20"])
         frame = self.shown_frame()
         self.wait(lambda: self.shown_frame() > frame + 2, "the last good graph")
+
+    def test_without_a_graph_the_one_for_viewing_is_shown(self):
+        viewer = self.view(None, "--frames", 1, size="64x64")
+        self.open(viewer)
+        self.assertEqual(viewer.state()["graph_name"], "foveal_view")
 
     def test_another_graph_scene_and_size(self):
         viewer = self.view("direct", size="64x64")

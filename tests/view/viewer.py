@@ -46,7 +46,7 @@ class Viewer:
         self.folder = folder
         self.log = open(folder / "viewer.log", "a+")
         self.process = subprocess.Popen(
-            [str(PROGRAM), "view", str(graph), "--scene", str(scene), "--size", size, *map(str, arguments)],
+            [str(PROGRAM), "view", *([str(graph)] if graph else []), "--scene", str(scene), "--size", size, *map(str, arguments)],
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=self.log, text=True, cwd=folder,
             env={**os.environ, **(env or {})})
         line = self.process.stdout.readline()
@@ -238,4 +238,13 @@ def read_exr(path, layer):
     return tuple(words)
 
 
-__all__ = ["By", "Keys", "PATIENCE", "PROGRAM", "PlainGraph", "SOAK", "SOURCE", "ViewTest", "Viewer", "read_exr"]
+def read_ppm(path):
+    """The bytes of the RGB of a picture, pixel after pixel."""
+    plain = path.with_suffix(".ppm")
+    subprocess.run(["oiiotool", path, "--ch", "R,G,B", "-d", "uint8", "-o", plain], check=True)
+    head = re.match(rb"P6\s+(\d+)\s+(\d+)\s+255\s", plain.read_bytes())
+    return plain.read_bytes()[head.end():]
+
+
+__all__ = ["By", "Keys", "PATIENCE", "PROGRAM", "PlainGraph", "SOAK", "SOURCE", "ViewTest", "Viewer", "read_exr",
+           "read_ppm"]

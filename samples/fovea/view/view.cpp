@@ -67,6 +67,9 @@ void addView(CLI::App& program, Action& action) {
   auto options = std::make_shared<ViewOptions>();
   view::Settings& settings = options->viewer.settings;
   addGraphOptions(*command, settings.graph);
+  settings.graph.graph = "foveal_view";
+  command->get_option("GRAPH")->required(false)->description(
+      "Graph: a file, or the bare name of a stock graph; default foveal_view");
   command
       ->add_option("--scene", settings.scene,
                    "Scene: a .json, .gltf or .glb file, or a bare name (cornellbox)")

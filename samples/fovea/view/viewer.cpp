@@ -159,7 +159,7 @@ std::optional<Settings> Viewer::changed(Settings settings, const Command& comman
     settings.graph.set.clear();
   }
   if (command.scene) {
-    known(sceneNames(), *command.scene, "scene");
+    known(scene::names(), *command.scene, "scene");
     settings.scene = *command.scene;
   }
   if (command.second && !command.second->empty()) known(graphNames(build_->file), *command.second, "graph");

@@ -129,6 +129,7 @@ class Viewer {
   Exchange::Clock::time_point lastTick_, nextFrame_;
   double framesPerSecond_ = 0;
   Shown seen_;            // by the newest finished frame
+  bool moving_ = false;   // whether it shows something else than the one before
   nlohmann::json times_;  // of the same
   std::set<std::filesystem::path> changedFiles_;
   Exchange::Clock::time_point changedAt_;

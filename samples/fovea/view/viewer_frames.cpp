@@ -32,6 +32,13 @@ Json viewsJson(const std::vector<scene::View>& views) {
   return json;
 }
 
+// Whether two frames show the same but for random numbers.
+bool showTheSame(const scene::Scene& scene, const scene::Moment& a, const scene::Moment& b) {
+  const bool changes = !scene.movers.empty() || !scene.animations.empty() || !scene.lightMotions.empty();
+  return (a.time == b.time || !changes) && a.gazes == b.gazes && a.camera.position == b.camera.position &&
+         a.camera.orientation == b.camera.orientation;
+}
+
 }  // namespace
 
 bool Viewer::frameIsDue() {
@@ -156,6 +163,7 @@ void Viewer::take(graph::FrameResult result) {
   if (seconds > 0)
     framesPerSecond_ = framesPerSecond_ > 0 ? 0.8 * framesPerSecond_ + 0.2 / seconds : 1 / seconds;
   if (!shown_.empty()) {
+    moving_ = !showTheSame(build_->scene->scene, seen_.moment, shown_.front().moment);
     seen_ = std::move(shown_.front());
     shown_.erase(shown_.begin());
   }
@@ -172,9 +180,7 @@ void Viewer::take(graph::FrameResult result) {
 
 // The second graph shows the moment that the first has just shown.
 void Viewer::takeSecond(graph::FrameResult result) {
-  const bool still = meanOf_ && meanOf_->time == seen_.moment.time && meanOf_->gazes == seen_.moment.gazes &&
-                     meanOf_->camera.position == seen_.moment.camera.position &&
-                     meanOf_->camera.orientation == seen_.moment.camera.orientation;
+  const bool still = meanOf_ && showTheSame(build_->scene->scene, *meanOf_, seen_.moment);
   if (!still || !accumulate_) means_.clear();
   meanOf_ = seen_.moment;
   for (auto& [name, data] : result.outputs) {
@@ -202,6 +208,7 @@ void Viewer::sendTick() {
             {"time", seen_.moment.time},
             {"playing", motion_.playing()},
             {"frozen", motion_.frozen()},
+            {"moving", moving_},
             {"speed", motion_.speed()},
             {"recording", motion_.recording()},
             {"recorded", motion_.recorded()},
@@ -229,25 +236,28 @@ void Viewer::sendState() {
   const scene::Geometry& geometry = build_->scene->geometry;
   std::vector<Diagnostic> messages = answer_;
   messages.insert(messages.end(), messages_.begin(), messages_.end());
-  Json state{{"build", builds_},
-             {"device", device_->name()},
-             {"version", FOVEA_VERSION},
-             {"graph", describeGraph(*build_->run->plan(), build_->description, build_->documents,
-                                     build_->changes, build_->run->executor().elementTypes())},
-             {"graph_name", build_->file.stem().string()},
-             {"graph_file", build_->file.string()},
-             {"scene", settings_.scene},
-             {"size", {settings_.size.x, settings_.size.y}},
-             {"seed", settings_.seed},
-             {"second", secondName_},
-             {"second_graph", second_ ? describeOutputs(second_->run->graph()) : Json::array()},
-             {"accumulate", accumulate_},
-             {"graphs", graphNames(build_->file)},
-             {"scenes", sceneNames()},
-             {"set", overridesOf(build_->changes)},
-             {"fovea_radius", build_->run->frame(0).views[0].foveaRadius},
-             {"bounds", {vectorJson(geometry.boundsMin), vectorJson(geometry.boundsMax)}},
-             {"messages", describeMessages(messages)}};
+  Json state{
+      {"build", builds_},
+      {"device", device_->name()},
+      {"version", FOVEA_VERSION},
+      {"graph", describeGraph(*build_->run->plan(), build_->description,
+                              session::sceneEnvironment(device_.get(), build_->scene->scene, geometry,
+                                                        settings_.size, settings_.graph.rays),
+                              build_->documents, build_->changes, build_->run->executor().elementTypes())},
+      {"graph_name", build_->file.stem().string()},
+      {"graph_file", build_->file.string()},
+      {"scene", settings_.scene},
+      {"size", {settings_.size.x, settings_.size.y}},
+      {"seed", settings_.seed},
+      {"second", secondName_},
+      {"second_graph", second_ ? describeOutputs(second_->run->graph()) : Json::array()},
+      {"accumulate", accumulate_},
+      {"graphs", graphNames(build_->file)},
+      {"scenes", scene::names()},
+      {"set", overridesOf(build_->changes)},
+      {"fovea_radius", build_->run->frame(0).views[0].foveaRadius},
+      {"bounds", {vectorJson(geometry.boundsMin), vectorJson(geometry.boundsMax)}},
+      {"messages", describeMessages(messages)}};
   exchange_.setState(textOf(state));
   exchange_.setTick(textOf({{"build", builds_}}));
 }

@@ -3,7 +3,6 @@
 #include <set>
 
 #include "framework/base/paths.h"
-#include "framework/scene/load.h"
 
 namespace fovea::view {
 namespace {
@@ -36,13 +35,6 @@ std::filesystem::path graphByName(const std::filesystem::path& current, const st
   for (const std::filesystem::path& folder : dataFolders("graphs"))
     if (std::filesystem::is_regular_file(folder / (name + ".json"), ec)) return folder / (name + ".json");
   return name;
-}
-
-std::vector<std::string> sceneNames() {
-  std::set<std::string> names;
-  for (const std::string& name : scene::builtinNames()) names.insert(name);
-  for (const std::filesystem::path& folder : scene::sceneSearchPath()) addJsonFiles(folder, names);
-  return {names.begin(), names.end()};
 }
 
 }  // namespace fovea::view

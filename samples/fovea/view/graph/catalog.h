@@ -12,7 +12,4 @@ std::vector<std::string> graphNames(const std::filesystem::path& current);
 // The file of such a name; beside `current` first.
 std::filesystem::path graphByName(const std::filesystem::path& current, const std::string& name);
 
-// Built-in scenes and scene files, by bare name, sorted.
-std::vector<std::string> sceneNames();
-
 }  // namespace fovea::view

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "framework/graph/migrate/migrate.h"
-#include "framework/graph/pass/registry.h"
 
 namespace fovea::view {
 namespace {
@@ -59,19 +58,6 @@ const ParameterSpec* specOf(const std::string& name, const Value& passes, const 
     }
   }
   return nullptr;
-}
-
-// "vpl-intensity-$intensity" lists what may stand for $intensity.
-std::vector<std::string> typeChoices(const std::string& name, const Value& passes) {
-  std::vector<std::string> choices;
-  for (const json::Member& pass : passes.members) {
-    const Value* type = pass.value.find("type");
-    if (!type || !type->string.ends_with("$" + name)) continue;
-    const std::string start = type->string.substr(0, type->string.size() - name.size() - 1);
-    for (const std::string& known : graph::Registry::global().types())
-      if (known.starts_with(start)) choices.push_back(known.substr(start.size()));
-  }
-  return choices;
 }
 
 Value textValue(std::string text) {
@@ -161,8 +147,7 @@ std::vector<GraphParameter> parametersOf(const Value& document, const std::strin
   const Value* passes = document.find("passes");
   if (!parameters || !passes) return list;
   for (const json::Member& member : parameters->members)
-    list.push_back({member.key, &member.value, specOf(member.key, *passes, prefix, description, bound),
-                    typeChoices(member.key, *passes)});
+    list.push_back({member.key, &member.value, specOf(member.key, *passes, prefix, description, bound)});
   return list;
 }
 

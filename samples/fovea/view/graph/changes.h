@@ -33,7 +33,6 @@ struct GraphParameter {
       nullptr;  // its value in the documents: "$name" where the graph gives one of its own
   // A parameter of a pass that takes its value from it and so says what it may be; nullptr if no pass takes it.
   const graph::ParameterSpec* spec = nullptr;
-  std::vector<std::string> choices;  // of types of passes that end in it: "type": "vpl-intensity-$intensity"
 };
 // In the order of the document; the documents must outlive the list.
 std::vector<GraphParameter> graphParameters(const Documents& documents, const graph::Description& description,

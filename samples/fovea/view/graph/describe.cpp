@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <fstream>
 
 #include "framework/base/paths.h"
 #include "framework/gpu/shader/shader.h"
+#include "framework/graph/report/json.h"
 #include "framework/graph/report/report.h"
 #include "framework/session/sources.h"
 
@@ -16,10 +17,8 @@ namespace {
 using Json = nlohmann::json;
 using graph::BoundPass;
 using graph::ParameterSpec;
-
-Json valueJson(const graph::Value& value) {
-  return std::visit([](const auto& v) { return Json(v); }, value);
-}
+using graph::specJson;
+using graph::valueJson;
 
 Json valueJson(const json::Value& value) {
   switch (value.type) {
@@ -34,31 +33,6 @@ Json valueJson(const json::Value& value) {
     default:
       return nullptr;
   }
-}
-
-const char* typeName(ParameterSpec::Type type) {
-  switch (type) {
-    case ParameterSpec::Type::Bool:
-      return "bool";
-    case ParameterSpec::Type::Int:
-      return "int";
-    case ParameterSpec::Type::Real:
-      return "real";
-    case ParameterSpec::Type::Choice:
-      return "choice";
-    case ParameterSpec::Type::Text:
-      return "text";
-  }
-  return "text";
-}
-
-Json specJson(const ParameterSpec& spec) {
-  Json json{{"doc", spec.doc}, {"type", typeName(spec.type)}, {"default", valueJson(spec.defaultValue)}};
-  if (std::isfinite(spec.min)) json["min"] = spec.min;
-  if (std::isfinite(spec.max)) json["max"] = spec.max;
-  if (!spec.choices.empty()) json["choices"] = spec.choices;
-  if (!spec.unit.empty()) json["unit"] = spec.unit;
-  return json;
 }
 
 // Of a pass that takes the value from a parameter of the graph, "$name".
@@ -76,12 +50,13 @@ std::string givenBy(const graph::Description& description, const std::string& pa
   return {};
 }
 
-Json parametersJson(const BoundPass& pass, const graph::Description& description, const Changes& changes) {
+Json parametersJson(const graph::Plan& plan, size_t number, const graph::Description& description,
+                    const graph::Environment& environment, const Changes& changes) {
   Json list = Json::array();
+  const BoundPass& pass = plan.graph->passes[number];
   const auto& specs = pass.declaration->parameters;
   for (size_t i = 0; i < specs.size(); ++i) {
-    Json json = specJson(specs[i]);
-    json["name"] = specs[i].name;
+    Json json = specJson(graph::fittingSpec(description, environment, uint32_t(number), specs[i]));
     json["value"] = valueJson(pass.parameters.values()[i]);
     json["changed"] = changes.contains(pass.name + "." + specs[i].name);
     const std::string given = givenBy(description, pass.name, specs[i].name);
@@ -132,6 +107,10 @@ Json portsJson(const graph::Plan& plan, size_t number, const graph::ElementTypes
     Json json{{"source", session::sourceName(pass, access)},
               {"name", session::portPath(pass, access)},
               {"direction", directionName(port.direction)},
+              {"resource", resource.name},
+              {"reads", access.reads},
+              {"writes", access.writes},
+              {"previous", access.previous},
               {"doc", doc.empty() ? port.doc : doc},
               {"is", graph::describe(resource.desc)},
               {"buffer", resource.desc.kind == graph::ResourceKind::Buffer},
@@ -156,7 +135,8 @@ std::vector<uint32_t> levelsOf(const graph::Plan& plan) {
   return levels;
 }
 
-Json passesJson(const graph::Plan& plan, const graph::Description& description, const Changes& changes,
+Json passesJson(const graph::Plan& plan, const graph::Description& description,
+                const graph::Environment& environment, const Changes& changes,
                 const graph::ElementTypes& types) {
   Json list = Json::array();
   const std::vector<uint32_t> levels = levelsOf(plan);
@@ -168,7 +148,7 @@ Json passesJson(const graph::Plan& plan, const graph::Description& description, 
               {"host", pass.declaration->kind == graph::PassKind::Host},
               {"view", plan.graph->views[pass.view]},
               {"level", levels[p] == graph::kNone ? Json(nullptr) : Json(levels[p])},
-              {"parameters", parametersJson(pass, description, changes)},
+              {"parameters", parametersJson(plan, p, description, environment, changes)},
               {"ports", portsJson(plan, p, types)}};
     list.push_back(std::move(json));
   }
@@ -212,7 +192,6 @@ Json viewJson(const graph::BoundGraph& bound, const Changes& changes) {
   Json list = Json::array();
   for (const ParameterSpec& spec : graph::viewParameters()) {
     Json json = specJson(spec);
-    json["name"] = spec.name;
     json["value"] = valueJson(*bound.view.find(spec.name));
     json["changed"] = changes.contains(std::string(graph::kViewPrefix) + spec.name);
     list.push_back(std::move(json));
@@ -220,21 +199,18 @@ Json viewJson(const graph::BoundGraph& bound, const Changes& changes) {
   return list;
 }
 
-// `prefix` is that of the names in `changes`: "right." for those of a sub-graph.
+// `prefix` is that of the names in `changes` and `settings`: "right." for those of a sub-graph. Only values with which the
+// graph works are offered.
 Json graphParametersJson(const std::vector<GraphParameter>& parameters, const std::string& prefix,
-                         const Changes& changes) {
+                         const std::vector<graph::Setting>& settings, const Changes& changes) {
   Json list = Json::array();
   for (const GraphParameter& p : parameters) {
-    Json json = p.spec ? specJson(*p.spec) : Json{{"doc", ""}, {"type", "text"}};
+    const auto setting = std::ranges::find(settings, prefix + p.name, &graph::Setting::name);
+    Json json = setting != settings.end() ? specJson(setting->spec)
+                : p.spec                  ? specJson(*p.spec)
+                                          : Json{{"doc", ""}, {"type", "text"}};
     json["name"] = p.name;
     json["default"] = valueJson(*p.written);
-    if (!p.spec && p.written->isBool()) json["type"] = "bool";
-    if (!p.spec && p.written->isNumber())
-      json["type"] = p.written->type == json::Value::Type::Int ? "int" : "real";
-    if (!p.choices.empty()) {
-      json["type"] = "choice";
-      json["choices"] = p.choices;
-    }
     if (p.written->isString() && p.written->string.starts_with("$"))
       json["given_by"] = p.written->string.substr(1);
     const auto changed = changes.find(prefix + p.name);
@@ -246,13 +222,13 @@ Json graphParametersJson(const std::vector<GraphParameter>& parameters, const st
 }
 
 Json subGraphsJson(const graph::Plan& plan, const graph::Description& description, const Documents& documents,
-                   const Changes& changes) {
+                   const std::vector<graph::Setting>& settings, const Changes& changes) {
   Json list = Json::array();
   for (const auto& [name, document] : documents.subGraphs)
     list.push_back(
         {{"name", name},
          {"parameters", graphParametersJson(subGraphParameters(name, documents, description, *plan.graph),
-                                            name + ".", changes)}});
+                                            name + ".", settings, changes)}});
   return list;
 }
 
@@ -281,19 +257,20 @@ std::string lineOf(const SourceLocation& where) {
 }  // namespace
 
 nlohmann::json describeGraph(const graph::Plan& plan, const graph::Description& description,
-                             const Documents& documents, const Changes& changes,
-                             const graph::ElementTypes& types) {
-  return {
-      {"name", plan.graph->name},
-      {"description", plan.graph->description},
-      {"passes", passesJson(plan, description, changes, types)},
-      {"edges", edgesJson(plan)},
-      {"outputs", describeOutputs(*plan.graph)},
-      {"parameters", graphParametersJson(graphParameters(documents, description, *plan.graph), "", changes)},
-      {"view", viewJson(*plan.graph, changes)},
-      {"sub_graphs", subGraphsJson(plan, description, documents, changes)},
-      {"levels", plan.levels.size()},
-      {"plan", Json::parse(graph::planJson(plan))}};
+                             const graph::Environment& environment, const Documents& documents,
+                             const Changes& changes, const graph::ElementTypes& types) {
+  const std::vector<graph::Setting> settings = graph::settings(description, environment);
+  return {{"name", plan.graph->name},
+          {"description", plan.graph->description},
+          {"passes", passesJson(plan, description, environment, changes, types)},
+          {"edges", edgesJson(plan)},
+          {"outputs", describeOutputs(*plan.graph)},
+          {"parameters",
+           graphParametersJson(graphParameters(documents, description, *plan.graph), "", settings, changes)},
+          {"view", viewJson(*plan.graph, changes)},
+          {"sub_graphs", subGraphsJson(plan, description, documents, settings, changes)},
+          {"levels", plan.levels.size()},
+          {"plan", Json::parse(graph::planJson(plan))}};
 }
 
 nlohmann::json describeOutputs(const graph::BoundGraph& graph) {

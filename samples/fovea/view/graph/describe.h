@@ -12,8 +12,8 @@ namespace fovea::view {
 
 // Passes with parameters and ports, edges, outputs, graph parameters and memory.
 nlohmann::json describeGraph(const graph::Plan& plan, const graph::Description& description,
-                             const Documents& documents, const Changes& changes,
-                             const graph::ElementTypes& types);
+                             const graph::Environment& environment, const Documents& documents,
+                             const Changes& changes, const graph::ElementTypes& types);
 
 // The outputs of a graph, each with the source that shows it.
 nlohmann::json describeOutputs(const graph::BoundGraph& graph);

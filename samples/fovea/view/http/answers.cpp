@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -133,23 +134,34 @@ std::string shotHeaders(const Shot& shot) {
       layout.encoded ? 1 : 0, shot.frames);
 }
 
+// What a browser decodes, or the three bytes of each pixel.
+Answer pictureOf(const graph::OutputData& data, const Display& display, const Shot& shot) {
+  constexpr std::array kMaps{"automatic", "plain", "helix", "signed"};
+  const Pixels pixels = draw(data, display);
+  const std::string headers =
+      shotHeaders(shot) + fmt::format("X-Fovea-Drawn: {}x{}\r\nX-Fovea-Map: {}\r\nX-Fovea-Range: {} {}\r\n",
+                                      pixels.width, pixels.height, kMaps[size_t(pixels.map)], pixels.low,
+                                      pixels.high);
+  if (display.exact)
+    return {200, "application/octet-stream", std::string(pixels.rgb.begin(), pixels.rgb.end()), headers};
+  return {200, "image/jpeg", jpeg(pixels, display.quality), headers};
+}
+
 }  // namespace
 
 Answer Answers::picture(std::string_view query) {
   Answer refusal;
+  const Display display = parseDisplay(query);
   if (queryValue(query, "minus")) {
     const auto [a, b] = pairFor(query, "minus", refusal);
     if (!a || !b) return refusal;
-    const Display display = parseDisplay(query);
-    return {200, "image/jpeg", jpeg(draw(difference(a->data, b->data), display), display.quality),
-            shotHeaders(*a)};
+    return pictureOf(difference(a->data, b->data), display, *a);
   }
   const ShotPointer shot = shotFor(query, refusal);
   if (!shot) return refusal;
   if (shot->data.desc.kind == graph::ResourceKind::Buffer)
     return {200, "application/octet-stream", {}, shotHeaders(*shot)};
-  const Display display = parseDisplay(query);
-  return {200, "image/jpeg", jpeg(draw(shot->data, display), display.quality), shotHeaders(*shot)};
+  return pictureOf(shot->data, display, *shot);
 }
 
 Answer Answers::file(const std::string& name, std::string_view query) {

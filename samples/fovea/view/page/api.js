@@ -22,8 +22,12 @@ export function queryOf(values) {
   return query.toString();
 }
 
+function sizeOf(answer, header) {
+  return (answer.headers.get(header) ?? "0x0").split("x").map(Number);
+}
+
 function headersOf(answer) {
-  const [width, height] = (answer.headers.get("X-Fovea-Size") ?? "0x0").split("x").map(Number);
+  const [width, height] = sizeOf(answer, "X-Fovea-Size");
   return {
     number: Number(answer.headers.get("X-Fovea-Number")),
     frame: Number(answer.headers.get("X-Fovea-Frame")),
@@ -31,17 +35,48 @@ function headersOf(answer) {
     height,
     channels: Number(answer.headers.get("X-Fovea-Channels")),
     type: answer.headers.get("X-Fovea-Type"),
+    map: answer.headers.get("X-Fovea-Map"),
+    range: (answer.headers.get("X-Fovea-Range") ?? "0 1").split(" ").map(Number),
     encoded: answer.headers.get("X-Fovea-Encoded") === "1",
   };
 }
 
-// A picture as a Blob with what is known of it; null if there is none yet. Throws an Error for a source that there is
-// not.
+// The bytes of RGB as the pixels of a canvas.
+function imageData(bytes, width, height) {
+  const data = new ImageData(width, height);
+  const words = new Uint32Array(data.data.buffer);
+  for (let i = 0, at = 0; i < words.length; ++i, at += 3)
+    words[i] = bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16) | 0xff000000;
+  return data;
+}
+
+// A picture as a Blob, or as `pixels` if values.exact is 1, with what is known of it; null if there is none yet. Throws
+// an Error for a source that there is not.
 export async function getPicture(values, signal) {
   const answer = await fetch(`picture?${queryOf(values)}`, { signal });
   if (answer.status === 204 || answer.status === 503) return null;
   if (!answer.ok) throw new Error((await answer.text()).trim());
-  return { ...headersOf(answer), blob: await answer.blob() };
+  const info = headersOf(answer);
+  const blob = await answer.blob();
+  if (!values.exact || blob.size === 0) return { ...info, blob, exact: false };
+  const pixels = imageData(new Uint8Array(await blob.arrayBuffer()), ...sizeOf(answer, "X-Fovea-Drawn"));
+  return { ...info, blob, pixels, exact: true };
+}
+
+// Draws a picture into a canvas, whose size becomes that of the picture.
+export async function paint(context, picture) {
+  const { canvas } = context;
+  const bitmap = picture.pixels ?? await createImageBitmap(picture.blob);
+  if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
+    canvas.width = bitmap.width;
+    canvas.height = bitmap.height;
+  }
+  if (picture.pixels) {
+    context.putImageData(bitmap, 0, 0);
+  } else {
+    context.drawImage(bitmap, 0, 0);
+    bitmap.close();
+  }
 }
 
 // The words of a region as a typed array, exactly as the device has them.

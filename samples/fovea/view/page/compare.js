@@ -1,7 +1,7 @@
 // A second graph beside the first: split, flip, difference, and how far the two are apart.
-import { control, getPicture, queryOf } from "./api.js";
+import { control, getPicture, paint, queryOf } from "./api.js";
 import { element, row } from "./dom.js";
-import { place } from "./picture.js";
+import { place, wantsExact } from "./picture.js";
 import { on, store } from "./store.js";
 
 const root = document.getElementById("compare");
@@ -38,7 +38,7 @@ function sourceOfSecond() {
 
 function arrange() {
   canvas.style.transform = `translate(${place.x}px, ${place.y}px) scale(${place.scale})`;
-  canvas.style.imageRendering = place.scale >= 2 ? "pixelated" : "auto";
+  canvas.style.imageRendering = place.scale >= 1 ? "pixelated" : "auto";
   const split = mode === "split";
   canvas.style.clipPath = split ? `inset(0 0 0 ${100 * share}%)` : "none";
   divider.hidden = !active() || !split || canvas.hidden;
@@ -47,7 +47,8 @@ function arrange() {
 }
 
 function request() {
-  const { display, source } = store;
+  const { source } = store;
+  const display = { ...store.display, exact: wantsExact() ? 1 : "" };
   if (mode !== "difference") return { source: sourceOfSecond(), ...display };
   return { source, minus: sourceOfSecond(), ...display, low: 0, high: 1, fit: "", exposure: Number(gain.value) };
 }
@@ -74,11 +75,7 @@ async function run() {
       const picture = await getPicture({ ...values, after: number }, abort.signal);
       if (picture && picture.blob.size > 0) {
         number = picture.number;
-        const bitmap = await createImageBitmap(picture.blob);
-        canvas.width = bitmap.width;
-        canvas.height = bitmap.height;
-        context.drawImage(bitmap, 0, 0);
-        bitmap.close();
+        await paint(context, picture);
         canvas.hidden = false;
         canvas.dataset.frame = picture.frame;
         canvas.dataset.mode = mode;
@@ -204,4 +201,5 @@ export function start() {
     if (active()) timer ??= setTimeout(measure, 300);
   });
   on("display", () => abort?.abort());
+  on("exact", () => abort?.abort());
 }

@@ -20,7 +20,11 @@ const exposure = element("input", { type: "range", id: "exposure", min: -10, max
 const exposureText = element("output", { for: "exposure" }, "0");
 const low = element("input", { type: "number", id: "low", step: "any", value: 0, "aria-label": "Shown black" });
 const high = element("input", { type: "number", id: "high", step: "any", value: 1, "aria-label": "Shown white" });
-const falseColor = element("input", { type: "checkbox", id: "false-color" });
+const map = element("select", { id: "map", onchange: () => setMap(map.value),
+  title: "Automatic: blue, white and red for single numbers of which any lies below 0" },
+option("", "automatic"), option("plain", "plain"), option("helix", "false colour"),
+option("signed", "signed: blue, white, red"));
+const legend = element("div", { id: "legend", hidden: true });
 const histogram = svg("svg", { class: "histogram", viewBox: "0 0 64 40", preserveAspectRatio: "none", role: "img",
   "aria-label": "Histogram" });
 const numbers = element("div", { id: "numbers", class: "note" });
@@ -167,6 +171,19 @@ function showSource() {
   root.title = port?.doc ?? "";
 }
 
+// What the colours of single numbers stand for.
+function showLegend() {
+  const { picture } = store;
+  const mapped = picture && !picture.buffer && (picture.map === "signed" || picture.map === "helix");
+  legend.hidden = !mapped;
+  if (!mapped) return;
+  legend.dataset.map = picture.map;
+  const [least, most] = picture.range;
+  const texts = picture.map === "signed" ? [least, 0, most] : [least, most];
+  legend.replaceChildren(element("div", { class: "bar" }), ...texts.map((v) =>
+    element("span", {}, String(Number(v.toPrecision(4))))));
+}
+
 export function start() {
   for (const [value, text] of [["color", "colour"], ["red", "red"], ["green", "green"], ["blue", "blue"],
     ["alpha", "alpha"], ["luminance", "luminance"]]) channel.append(option(value, text));
@@ -183,13 +200,12 @@ export function start() {
         title: "0 to 1 for colours, the range of their values for all else",
         onclick: resetRange }, "Reset")),
     row("Curve", "curve", curve),
-    row("False colour", "false-color", falseColor),
+    row("Colours", "map", map), legend,
     row("Keep", null, png, exr, tev),
     histogram, numbers, element("div", { id: "region" }));
   exposure.addEventListener("input", sendExposure);
   for (const input of [low, high]) input.addEventListener("change", sendRange);
   for (const input of [layer, mip]) input.addEventListener("change", sendPart);
-  falseColor.addEventListener("change", () => setDisplay({ false_color: falseColor.checked ? 1 : "" }));
   on("state", fillSources);
   on("source", () => {
     statistics = null;
@@ -203,14 +219,18 @@ export function start() {
     last = -kEvery;
     update();
   });
-  on("picture", update);
+  on("picture", () => {
+    update();
+    showLegend();
+  });
   on("tick", showTev);
 }
 
-export function falseColorOn(value) {
-  falseColor.checked = value;
-  setDisplay({ false_color: value ? 1 : "" });
+function setMap(value) {
+  map.value = value;
+  setDisplay({ map: value });
 }
+
 export function toggleFalseColor() {
-  falseColorOn(!falseColor.checked);
+  setMap(map.value === "helix" ? "" : "helix");
 }

@@ -9,6 +9,7 @@ import * as parameters from "./parameters.js";
 import * as picture from "./picture.js";
 import * as points from "./points.js";
 import * as region from "./region.js";
+import * as resources from "./resources.js";
 import { on, show, store, tell } from "./store.js";
 import * as timings from "./timings.js";
 
@@ -192,7 +193,8 @@ function togglePanel(side) {
 }
 
 function toggleWide() {
-  byId("widen").setAttribute("aria-pressed", String(byId("main").classList.toggle("wide")));
+  const wide = String(byId("main").classList.toggle("wide"));
+  for (const button of document.querySelectorAll(".widen")) button.setAttribute("aria-pressed", wide);
 }
 
 function showKeys() {
@@ -200,7 +202,7 @@ function showKeys() {
 }
 
 function start() {
-  for (const part of [picture, look, region, points, compare, move, timings, graph, parameters]) part.start();
+  for (const part of [picture, look, region, points, compare, move, timings, graph, resources, parameters]) part.start();
   on("state", drawChoices);
   on("picture", tellTick);
   on("toggle-false-color", look.toggleFalseColor);
@@ -210,11 +212,12 @@ function start() {
   choose("size", (name) => ({ size: name.split("x").map(Number) }));
   byId("toggle-left").addEventListener("click", () => togglePanel("left"));
   byId("toggle-right").addEventListener("click", () => togglePanel("right"));
-  byId("widen").addEventListener("click", toggleWide);
+  for (const button of document.querySelectorAll(".widen")) button.addEventListener("click", toggleWide);
   byId("help").addEventListener("click", showKeys);
   for (const [, label, what] of move.keys)
     if (label) byId("key-list").append(element("dt", {}, label), element("dd", {}, what));
   for (const [label, what] of [...move.held, ["[ ]", "hide and show the panels"], ["X", "more room for the graph"],
+      ["/", "find a pass in the graph"],
       ["wheel, Shift-drag", "zoom and pan"],
     ["drag", "turn the camera"], ["Ctrl-drag", "numbers of a region"], ["click", "numbers of the nearest point"]])
     byId("key-list").append(element("dt", {}, label), element("dd", {}, what));
@@ -224,6 +227,10 @@ function start() {
     if (event.key === "]") togglePanel("right");
     if (event.key === "x") toggleWide();
     if (event.key === "?") showKeys();
+    if (event.key === "/") {
+      event.preventDefault();
+      graph.focusFind();
+    }
   });
   listen(onTick, onLost);
 }

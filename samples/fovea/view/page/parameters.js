@@ -41,16 +41,16 @@ function slider(parameter, number, whole) {
 
 function input(parameter, name, id) {
   const { type, value } = parameter;
-  if (type === "bool") {
+  if (type === "bool" && !parameter.choices) {
     const box = element("input", { type: "checkbox", id });
     box.checked = String(value) === "true";
     box.addEventListener("change", () => send(name, box.checked));
     return [box];
   }
-  if (type === "choice") {
-    const options = parameter.choices.map((c) => element("option", { value: c, selected: c === value }, c));
+  if (parameter.choices) {
+    const options = parameter.choices.map((c) => element("option", { value: c, selected: c === String(value) }, c));
     const select = element("select", { id }, ...options);
-    select.addEventListener("change", () => send(name, select.value));
+    select.addEventListener("change", () => send(name, type === "choice" ? select.value : JSON.parse(select.value)));
     return [select];
   }
   if (type === "text") {

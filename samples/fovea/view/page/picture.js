@@ -1,5 +1,5 @@
 // The picture: fetches the newest one, draws it, zooms and pans, and tells the pixel under the cursor.
-import { getPicture, getPixels } from "./api.js";
+import { getPicture, getPixels, paint } from "./api.js";
 import { drawTable } from "./buffers.js";
 import { floatText } from "./dom.js";
 import { on, portOf, store, tell } from "./store.js";
@@ -17,13 +17,38 @@ export const place = { scale: 1, x: 0, y: 0, fitted: true };
 
 let abort = null; // of the request under way
 let fresh = true; // draw at once, whatever the number of the picture
+let asking = false; // for a picture with its pixels as they are
+let rested = false; // nothing newer has come for a moment
+let restTimer = null;
+
+// Whether the page gets pixels as they are: always, unless the picture is large and moves. Compression shows where one
+// looks closely.
+const kSmall = 2 ** 16; // pixels
+const kRest = 250; // milliseconds
+export function wantsExact() {
+  const { picture, tick } = store;
+  return rested || !tick?.moving || tick.frozen || place.scale > 1
+      || (picture !== null && picture.width * picture.height <= kSmall);
+}
+
+let wasExact = true;
+
+const isWorse = () => store.picture !== null && !store.picture.exact && !store.picture.buffer;
+
+// Asks for the picture again, without loss, if it is shown compressed although its exact pixels are wanted.
+function checkExact() {
+  const exact = wantsExact();
+  if (exact !== wasExact) tell("exact", exact);
+  wasExact = exact;
+  if (exact && !asking && isWorse()) again();
+}
 
 export function fitPicture() {
   if (!store.picture) return;
   const box = stage.getBoundingClientRect();
   const margin = 16;
   const scale = Math.min((box.width - margin) / canvas.width, (box.height - margin) / canvas.height);
-  place.scale = scale >= 1 ? Math.max(1, Math.floor(scale * 4) / 4) : scale;
+  place.scale = scale >= 1 ? Math.floor(scale) : scale;  // all pixels as squares of one size
   place.x = (box.width - canvas.width * place.scale) / 2;
   place.y = (box.height - canvas.height * place.scale) / 2;
   place.fitted = true;
@@ -32,7 +57,7 @@ export function fitPicture() {
 
 function arrange() {
   canvas.style.transform = `translate(${place.x}px, ${place.y}px) scale(${place.scale})`;
-  canvas.style.imageRendering = place.scale >= 2 ? "pixelated" : "auto";
+  canvas.style.imageRendering = place.scale >= 1 ? "pixelated" : "auto";
   document.getElementById("zoom").textContent = `${Math.round(place.scale * 100)}%`;
   tell("place", place);
 }
@@ -104,34 +129,41 @@ async function draw(picture) {
   canvas.hidden = overlay.hidden = buffer;
   waiting.hidden = true;
   const resized = !store.picture || store.picture.width !== picture.width || store.picture.height !== picture.height;
-  store.picture = { ...picture, blob: null, buffer };
+  store.picture = { ...picture, blob: null, pixels: null, buffer };
   if (buffer) {
     await drawTable();
   } else {
-    const bitmap = await createImageBitmap(picture.blob);
-    if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
-      canvas.width = bitmap.width;
-      canvas.height = bitmap.height;
-    }
-    context.drawImage(bitmap, 0, 0);
-    bitmap.close();
+    await paint(context, picture);
     if (resized && place.fitted) fitPicture();
   }
   canvas.dataset.frame = picture.frame;
   canvas.dataset.source = store.source;
+  canvas.dataset.exact = picture.exact;
   tell("picture", store.picture);
   readPixel();
+  if (!picture.exact) waitForRest();
+}
+
+function waitForRest() {
+  clearTimeout(restTimer);
+  restTimer = setTimeout(() => {
+    rested = true;
+    checkExact();
+  }, kRest);
 }
 
 // One request at a time: the next one is sent when the last picture has been drawn.
 export async function runPictures() {
   for (;;) {
     const source = store.source;
-    const wanted = fresh ? 0 : store.picture?.number ?? 0;
+    asking = wantsExact();
+    const wanted = fresh || (asking && isWorse()) ? 0 : store.picture?.number ?? 0;
     fresh = false;
     abort = new AbortController();
     try {
-      const picture = await getPicture({ source, after: wanted, ...store.display }, abort.signal);
+      const exact = asking ? 1 : "";
+      const picture = await getPicture({ source, after: wanted, ...store.display, exact }, abort.signal);
+      rested &&= picture !== null && picture.number === store.picture?.number;
       if (picture && source === store.source) await draw(picture);
       else if (!picture) await new Promise((resume) => setTimeout(resume, 100));
     } catch (error) {
@@ -155,6 +187,8 @@ export function start() {
     again();
   });
   on("display", again);
+  on("place", checkExact);
+  on("tick", checkExact);
   on("state", () => {
     document.getElementById("source-name").textContent = nameOf(store.source);
   });

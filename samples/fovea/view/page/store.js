@@ -4,7 +4,7 @@ export const store = {
   state: null, // of the graph that runs (GET state)
   tick: null, // of the newest frame
   source: "image", // that is locked in the picture
-  display: { exposure: 0, channel: "color", curve: "", false_color: "", low: 0, high: 1, fit: 1 },
+  display: { exposure: 0, channel: "color", curve: "", map: "", low: 0, high: 1, fit: 1 },
   region: null, // of the picture, of which numbers are told: x, y, width, height in pixels
   picture: null, // facts about the picture that is drawn: number, frame, width, height, channels, buffer
 };

@@ -1,11 +1,10 @@
-// Times of the passes as a table with their history, counters, and the plan as a grid.
+// Times of the passes as a table with their history, and counters.
 import { bytesText, element, svg } from "./dom.js";
 import { mainPort, on, portOf, show, store, tell } from "./store.js";
 
 const kHistory = 90;
 const root = document.getElementById("timings");
 const countersRoot = document.getElementById("counters");
-const planRoot = document.getElementById("plan");
 
 let rows = new Map(); // pass index -> cells
 let histories = new Map();
@@ -33,6 +32,9 @@ function sparkline(values, most) {
   });
   return `${d}L100 20Z`;
 }
+
+// Three digits, or all of the whole number.
+const milliseconds = (ms) => ms.toFixed(ms < 10 ? 2 : ms < 100 ? 1 : 0);
 
 // The height of a row of the history: what nearly all values stay below, so that the first frame does not flatten it.
 function usual(values) {
@@ -162,14 +164,14 @@ function update(tick) {
     const values = histories.get(timing.pass) ?? [];
     const now = median(values.slice(-9));
     cells.path.setAttribute("d", sparkline(values, usual(values)));
-    cells.time.textContent = now.toFixed(now < 10 ? 2 : 1);
+    cells.time.textContent = milliseconds(now);
     cells.time.title = store.state.graph.passes[timing.pass].host ? "on the CPU" : "";
     explain(cells, timing);
     showDelta(cells.delta, timing.pass, median(values));
     showSteps(cells, timing.pass, timing);
   }
   const frame = histories.get("frame") ?? [];
-  total.gpu.textContent = median(frame.slice(-9)).toFixed(2);
+  total.gpu.textContent = milliseconds(median(frame.slice(-9)));
   showDelta(total.delta, "frame", median(frame));
   const wall = median((histories.get("wall") ?? []).slice(-9));
   total.note.textContent = `${wall.toFixed(1)} ms a frame on the clock, of which ${times.observe.toFixed(2)} ms copy ` +
@@ -184,51 +186,11 @@ function showSource() {
     cells.row.classList.toggle("shown", store.state.graph.passes[index].name === pass);
 }
 
-// Passes by resources: each resource is a bar from its first to its last level; kept ones never end.
-function drawPlan() {
-  const { plan } = store.state.graph;
-  const levels = plan.levels.length;
-  const names = 130;
-  const cell = Math.max(12, Math.min(28, 380 / levels));
-  const line = 15;
-  const resources = plan.resources;
-  const drawing = svg("svg", { width: names + levels * cell + 70, height: (resources.length + 1) * line + 6,
-    role: "img", "aria-label": "Lifetimes of resources by level" });
-  plan.levels.forEach((level, i) => {
-    const x = names + i * cell;
-    const barriers = level.barriers.images?.length ?? 0;
-    const tick = svg("text", { x: x + 2, y: 11, class: "soft" }, String(i));
-    tick.append(svg("title", {}, `level ${i}: ${level.passes.map((p) => p.name).join(", ")}; ` +
-      `${level.barriers.memory ? `waits for ${level.barriers.memory.from}` : "no memory barrier"}, ` +
-      `${barriers} image layout changes`));
-    drawing.append(tick, svg("line", { x1: x, y1: line, x2: x, y2: (resources.length + 1) * line }));
-  });
-  resources.forEach((r, i) => {
-    const y = (i + 1) * line;
-    const [first, last] = r.levels ?? [0, levels];
-    const kept = r.heap === undefined;
-    const from = names + (kept ? 0 : first) * cell;
-    const to = names + (kept ? levels : Math.min(levels, last + 1)) * cell;
-    const text = r.name.length > 22 ? `${r.name.slice(0, 21)}…` : r.name;
-    const bar = svg("rect", { x: from + 1, y: y + 3, width: Math.max(4, to - from - 2), height: line - 5, rx: 2,
-      class: kept ? "kept" : "" });
-    bar.append(svg("title", {}, `${r.name}: ${r.is}, ${bytesText(r.bytes)}, ${r.lifetime}` +
-      (kept ? ", memory of its own" : `, heap ${r.heap} at ${bytesText(r.offset)}`)));
-    drawing.append(svg("text", { x: 0, y: y + 11 }, text), bar,
-      svg("text", { x: names + levels * cell + 6, y: y + 11, class: "soft" }, bytesText(r.bytes)));
-  });
-  planRoot.replaceChildren(drawing, element("p", { class: "note" },
-    `${bytesText(plan.memory.transient)} for one frame, ` +
-    `${bytesText(plan.memory.transient_without_aliasing)} if nothing shared memory; ` +
-    `${bytesText(plan.memory.kept)} kept. Darker bars are kept from frame to frame.`));
-}
-
 export function start() {
   on("state", () => {
     rows = new Map();
     histories = new Map();
     root.replaceChildren();
-    drawPlan();
   });
   on("times", keep);
   on("numbers", update);

@@ -46,12 +46,30 @@ struct Helix {
   }
 };
 
+// From blue over white to red for t from -1 to 1.
+Rgb signedColor(float t) {
+  constexpr std::array<float, 3> kBelow{0.02f, 0.19f, 0.55f}, kAbove{0.60f, 0.03f, 0.09f},
+      kMiddle{0.97f, 0.97f, 0.97f};
+  const auto& end = t < 0 ? kBelow : kAbove;
+  const float share = std::clamp(std::abs(t), 0.0f, 1.0f);
+  Rgb color;
+  for (size_t c = 0; c < 3; ++c) color[c] = to8(kMiddle[c] + share * (end[c] - kMiddle[c]));
+  return color;
+}
+
+bool isColor(const Layout& layout, const Display& display) {
+  return layout.channels >= 3 && display.channel == Display::Channel::Color &&
+         (display.map == Display::Map::Automatic || display.map == Display::Map::Plain);
+}
+
 class Painter {
  public:
   Painter(const Layout& layout, const Display& display)
-      : display_(display), channels_(layout.channels), color_(colored(layout, display)) {
+      : display_(display), channels_(layout.channels), color_(isColor(layout, display)) {
     const float range = display.high - display.low;
     factor_ = (range != 0 ? 1 / range : 1) * display.scale;
+    const float furthest = std::max(std::abs(display.low), std::abs(display.high));
+    signedFactor_ = display.scale / (furthest > 0 ? furthest : 1);
     offset_ = -display.low * (range != 0 ? 1 / range : 1);
     srgb_ = display.curve == Display::Curve::Srgb || (display.curve == Display::Curve::Automatic && color_ &&
                                                       layout.type == Layout::Type::Float && !layout.encoded);
@@ -85,17 +103,15 @@ class Painter {
       const float v = single(texel, channels_, display_.channel);
       const auto mark = display_.marks ? markOf(&v, 1) : std::nullopt;
       const uint8_t grey = level(v);
-      result = mark                  ? *mark
-               : display_.falseColor ? helix().colors[to8(v * factor_ + offset_)]
-                                     : Rgb{grey, grey, grey};
+      result = mark                                   ? *mark
+               : display_.map == Display::Map::Helix  ? helix().colors[to8(v * factor_ + offset_)]
+               : display_.map == Display::Map::Signed ? signedColor(v * signedFactor_)
+                                                      : Rgb{grey, grey, grey};
     }
     std::copy(result.begin(), result.end(), out);
   }
 
  private:
-  static bool colored(const Layout& layout, const Display& display) {
-    return layout.channels >= 3 && display.channel == Display::Channel::Color && !display.falseColor;
-  }
   static const Helix& helix() {
     static const Helix table;
     return table;
@@ -119,13 +135,17 @@ class Painter {
   Display display_;
   uint32_t channels_;
   bool color_;
-  float factor_ = 1, offset_ = 0;
+  float factor_ = 1, offset_ = 0, signedFactor_ = 1;
   bool srgb_ = false;
 };
 
-// The range of the picture's own values, where they are no colours.
+// What the picture's own values decide, where they are no colours: the map, and the range.
 Display fitted(const Display& display, const Layout& layout, const std::vector<float>& values) {
-  if (layout.channels >= 3 && !display.falseColor) return display;
+  Display found = display;
+  if (isColor(layout, display)) {
+    found.map = Display::Map::Plain;
+    return found;
+  }
   float low = std::numeric_limits<float>::max(), high = std::numeric_limits<float>::lowest();
   for (size_t i = 0; i + layout.channels <= values.size(); i += layout.channels) {
     const float v = Painter::single(&values[i], layout.channels, display.channel);
@@ -133,7 +153,9 @@ Display fitted(const Display& display, const Layout& layout, const std::vector<f
     low = std::min(low, v);
     high = std::max(high, v);
   }
-  Display found = display;
+  if (display.map == Display::Map::Automatic)
+    found.map = low < 0 ? Display::Map::Signed : Display::Map::Plain;
+  if (!display.fit || (layout.channels >= 3 && found.map == Display::Map::Plain)) return found;
   found.scale = 1;
   if (low <= high) found.low = low, found.high = high > low ? high : low + 1;
   return found;
@@ -142,6 +164,7 @@ Display fitted(const Display& display, const Layout& layout, const std::vector<f
 // Each pixel becomes the mean of those that it covers.
 Pixels shrunk(const Pixels& pixels, uint32_t width) {
   Pixels small;
+  small.map = pixels.map, small.low = pixels.low, small.high = pixels.high;
   small.width = width;
   small.height = std::max(1u, uint32_t(uint64_t(pixels.height) * width / pixels.width));
   small.rgb.resize(size_t(small.width) * small.height * 3);
@@ -186,19 +209,29 @@ Display parseDisplay(std::string_view query) {
   if (curve == "srgb") d.curve = Display::Curve::Srgb;
   if (curve == "linear") d.curve = Display::Curve::Linear;
   d.fit = queryValue(query, "fit") == "1";
-  d.falseColor = queryValue(query, "false_color") == "1";
+  const std::string map = queryValue(query, "map").value_or("");
+  if (map == "plain") d.map = Display::Map::Plain;
+  if (map == "helix") d.map = Display::Map::Helix;
+  if (map == "signed") d.map = Display::Map::Signed;
   d.marks = queryValue(query, "marks") != "0";
   d.width = uint32_t(queryNumber(query, "width", 0, 4096, 0));
   d.quality = int(queryNumber(query, "quality", 1, 100, d.quality));
+  d.exact = queryValue(query, "exact") == "1";
   return d;
 }
 
 Pixels draw(const graph::OutputData& data, const Display& display) {
   const Layout layout = layoutOf(data.desc);
   const std::vector<float> values = numbers(data);
-  Pixels pixels{layout.width, layout.height, {}};
+  const Display shown = fitted(display, layout, values);
+  Pixels pixels{layout.width, layout.height,           {},
+                shown.map,    shown.low / shown.scale, shown.high / shown.scale};
+  if (shown.map == Display::Map::Signed) {
+    pixels.high = std::max(std::abs(pixels.low), std::abs(pixels.high));
+    pixels.low = -pixels.high;
+  }
   pixels.rgb.resize(size_t(pixels.width) * pixels.height * 3);
-  const Painter painter(layout, display.fit ? fitted(display, layout, values) : display);
+  const Painter painter(layout, shown);
   for (size_t i = 0; i * layout.channels < values.size(); ++i)
     painter.paint(&values[i * layout.channels], &pixels.rgb[i * 3]);
   return display.width > 0 && pixels.width > display.width ? shrunk(pixels, display.width) : pixels;
