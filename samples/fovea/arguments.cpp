@@ -127,6 +127,10 @@ void addFollowLinksOption(CLI::App& command) {
       "those of git-annex, DVC and Nix do; the same as FOVEA_FOLLOW_LINKS=1");
 }
 
+void addJsonFlag(CLI::App& command, bool& json) {
+  command.add_flag("--json", json, "Print JSON, for programs");
+}
+
 void addEnvironmentOption(CLI::App& command, std::string& file) {
   command
       .add_option("--environment", file,

@@ -22,10 +22,14 @@ void addDeviceOptions(CLI::App& command, std::string& device, std::vector<std::s
 void addFrameLimitOption(CLI::App& command, double& seconds);
 // --follow-links
 void addFollowLinksOption(CLI::App& command);
+// --json
+void addJsonFlag(CLI::App& command, bool& json);
 // --environment
 void addEnvironmentOption(CLI::App& command, std::string& file);
 // --gaze, --radius, --layer, --exposure, --json
 void addCompareOptions(CLI::App& command, CompareOptions& options);
+// The text of a file. Throws Error(BadInput) naming it; kind: what is wanted, in words.
+std::string readText(const std::string& file, const char* kind);
 // Adds an option that may be given several times, each time with one value.
 CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values,
                      const std::string& doc);

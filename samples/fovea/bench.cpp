@@ -40,6 +40,10 @@ void addSuiteOptions(CLI::App& command, bench::SuiteOptions& options) {
       "--replace", options.replace,
       "Measure anew what was measured with other code, device or parameters,\ninstead of refusing to go on");
   command.add_flag("--report", options.report, "Only tables and report, from the results that are there");
+  command.add_flag(
+      "--serve", options.serve,
+      "Measure the jobs whose names arrive on standard input, one a line, and answer each with a\n"
+      "line when its result is written; for programs that spread a suite over machines");
   command.add_flag("--list", options.list, "Print the names of the jobs and stop");
   addList(command, "--scene", options.scenes,
           "Scene instead of those of the suite: a file, a bare name, or a folder with a slash\n"

@@ -14,6 +14,11 @@ using Action = std::function<ExitCode()>;
 void addRender(CLI::App& program, Action& action);
 void addCheck(CLI::App& program, Action& action);
 void addMigrate(CLI::App& program, Action& action);
+void addGraphs(CLI::App& program, Action& action);  // graphs, describe
+void addFormat(CLI::App& program, Action& action);  // fmt
+void addDiff(CLI::App& program, Action& action);    // diff
+void addNew(CLI::App& program, Action& action);     // new graph, new pass
+void addCompletion(CLI::App& program, Action& action);
 void addPasses(CLI::App& program, Action& action);
 void addSchema(CLI::App& program, Action& action);
 void addDevices(CLI::App& program, Action& action);

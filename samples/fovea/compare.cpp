@@ -30,15 +30,10 @@ struct Row {
 
 Json toJson(const Row& row) {
   const image::Measures& m = row.measures;
-  return {{"pixels", m.pixels},
-          {"mse", m.mse},
-          {"psnr", m.psnr},
-          {"relmse", m.relMse},
-          {"flip", m.flip},
-          {"blocks", m.blocks},
-          {"noise_floor", m.noiseFloor},
-          {"relmse_noise_floor", m.relMseNoiseFloor},
-          {"direct_floor", row.directFloor}};
+  Json json = {{"pixels", m.pixels}};
+  for (const auto& [name, value] : image::namedMeasures(m)) json[name] = value;
+  json["direct_floor"] = row.directFloor;
+  return json;
 }
 
 void print(const Options& options, const Compared& compared, const Row (&rows)[3]) {

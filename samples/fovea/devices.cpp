@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
 
 #include "framework/gpu/device.h"
 #include "framework/graph/report/report.h"
@@ -11,11 +13,27 @@
 namespace fovea::cli {
 namespace {
 
-ExitCode listAll() {
+ExitCode printJson(const std::vector<gpu::DeviceInfo>& devices) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const gpu::DeviceInfo& d : devices)
+    all.push_back({{"index", d.index},
+                   {"name", d.name},
+                   {"type", d.type},
+                   {"vulkan", d.apiVersion},
+                   {"memory_bytes", d.memoryBytes},
+                   {"driver", d.driver},
+                   {"missing", d.missing},
+                   {"without", d.without}});
+  fmt::print("{}\n", all.dump(2));
+  return ExitCode::Ok;
+}
+
+ExitCode listAll(bool asJson) {
   const std::vector<gpu::DeviceInfo> devices = gpu::listDevices();
   if (devices.empty())
     throw Error(ExitCode::NoDevice, "there is no Vulkan device",
                 "install a driver; mesa-vulkan-drivers renders on the CPU");
+  if (asJson) return printJson(devices);
   size_t name = 4, type = 4;
   for (const gpu::DeviceInfo& d : devices) {
     name = std::max(name, d.name.size());
@@ -35,7 +53,10 @@ ExitCode listAll() {
 }  // namespace
 
 void addDevices(CLI::App& program, Action& action) {
-  program.add_subcommand("devices", "List the Vulkan devices")->callback([&action] { action = listAll; });
+  CLI::App* command = program.add_subcommand("devices", "List the Vulkan devices");
+  auto asJson = std::make_shared<bool>(false);
+  addJsonFlag(*command, *asJson);
+  command->callback([asJson, &action] { action = [asJson] { return listAll(*asJson); }; });
 }
 
 }  // namespace fovea::cli

@@ -75,6 +75,11 @@ ExitCode parseAndRun(int argc, char** argv) {
   addView(program, action);
   addCheck(program, action);
   addMigrate(program, action);
+  addFormat(program, action);
+  addDiff(program, action);
+  addNew(program, action);
+  addCompletion(program, action);
+  addGraphs(program, action);
   addPasses(program, action);
   addSchema(program, action);
   addDevices(program, action);

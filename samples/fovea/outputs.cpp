@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "fovea/error.h"
 #include "framework/base/files.h"
@@ -170,8 +171,19 @@ std::vector<std::string> OutputFiles::outputsOf(const graph::BoundGraph& graph, 
                               graph.name, wanted, file.name, quoteList(all)),
                   "name it in \"outputs\" of the graph, e.g. \"image\": \"tonemap.image\", or write .exr");
     names.insert(wanted);
+    // What is no number shows as black in a display format, so that only the radiance tells.
+    if (wanted == kDisplay && std::ranges::count(layers_, kLinear) > 0) names.insert(kLinear);
   }
   return {names.begin(), names.end()};
+}
+
+void OutputFiles::check(const graph::FrameResult& frame) {
+  for (const auto& [name, output] : frame.outputs) {
+    if (output.desc.kind != graph::ResourceKind::Image || !isFloat(output.desc)) continue;
+    const image::Image picture = withoutAlpha(session::toImage(output));
+    if (std::ranges::all_of(picture.data, [](float v) { return std::isnan(v); }))
+      withoutNumbers_.insert(name);
+  }
 }
 
 void OutputFiles::write(File& file, const graph::FrameResult& frame, image::Metadata metadata) {
@@ -195,11 +207,13 @@ void OutputFiles::write(File& file, const graph::FrameResult& frame, image::Meta
 }
 
 void OutputFiles::writeFrame(const graph::FrameResult& frame, const image::Metadata& metadata) {
+  check(frame);
   for (File& file : files_)
     if (file.sequence) write(file, frame, metadata);
 }
 
 void OutputFiles::writeLast(const graph::FrameResult& frame, const image::Metadata& metadata) {
+  check(frame);
   for (File& file : files_)
     if (!file.sequence) write(file, frame, metadata);
 }

@@ -44,6 +44,8 @@ class OutputFiles {
   void writeLast(const graph::FrameResult& frame, const image::Metadata& metadata);
   // The most pixels of a frame whose light passes could not store, by the output that shows them.
   const std::map<std::string, uint64_t>& beyondRange() const { return beyondRange_; }
+  // Outputs of which no pixel of a frame was a number.
+  const std::set<std::string>& withoutNumbers() const { return withoutNumbers_; }
   // Names of the files written, for the report: "ir.png", "out_0000.exr ... out_0041.exr".
   std::vector<std::string> written() const;
 
@@ -61,12 +63,14 @@ class OutputFiles {
     std::string shown() const;      // the output that it shows, if it is a single one
     std::string extension() const;  // lower case, without the dot
   };
+  void check(const graph::FrameResult& frame);
   void write(File& file, const graph::FrameResult& frame, image::Metadata metadata);
   static File parse(const std::string& name);
   std::vector<File> files_;
   std::vector<std::string> layers_;  // layers of an EXR file that shows every output
   Overlay overlay_;
   std::map<std::string, uint64_t> beyondRange_;
+  std::set<std::string> withoutNumbers_;
 };
 
 }  // namespace fovea::cli

@@ -8,6 +8,7 @@
 #include "fovea/scene.h"
 #include "framework/base/files.h"
 #include "framework/base/text_file.h"
+#include "framework/gpu/loader/capture.h"
 #include "framework/graph/report/report.h"
 #include "framework/image/overlay.h"
 #include "framework/scene/fovea.h"
@@ -38,6 +39,7 @@ struct RenderOptions {
   double gazeGapMs = 1000 * scene::kGazeGap, frameLimit = kFrameLimit;
   std::vector<std::string> outputs, without;
   uint32_t first = 0, frames = 1, warmup = 0, seed = 1;
+  std::optional<uint32_t> capture;  // number of the frame
   bool quiet = false, validation = false, showFovea = false;
 };
 
@@ -64,6 +66,7 @@ class Render {
   void checkOutputNames() const;
   void chooseOutputs();
   void loadInputs();
+  void openDevice();
   void buildPlan();
   void buildExecutor();
   void renderFrames();
@@ -73,6 +76,7 @@ class Render {
   void warnOfLightBeyondRange() const;
   void report() const;
   void submit(uint64_t index, bool readOutputs);
+  void capture(uint64_t index, bool readOutputs);
   void showFovea();
   image::Metadata metadata(uint64_t index) const;
 
@@ -86,6 +90,7 @@ class Render {
   graph::Description description_;
   scene::Scene scene_;
   scene::Geometry geometry_;
+  std::unique_ptr<gpu::Capture> capture_;
   std::shared_ptr<gpu::Device> device_;
   std::unique_ptr<session::GraphRun> run_;
   std::unique_ptr<Timings> timings_;
@@ -111,6 +116,11 @@ void Render::checkFiles() {
   if (!options_.timings.empty() && !has(options_.timings, ".json") && !has(options_.timings, ".csv"))
     throw Error(ExitCode::Usage, "cannot tell a format from --timings `" + options_.timings + "`",
                 "name it .json or .csv");
+  const uint64_t end = uint64_t(options_.first) + options_.warmup + options_.frames;
+  if (options_.capture && (*options_.capture < options_.first || *options_.capture >= end))
+    throw Error(ExitCode::Usage, fmt::format("--capture {}: that frame is not rendered", *options_.capture),
+                fmt::format("the frames of this run are {} to {}", options_.first, end - 1));
+  if (options_.capture) capture_ = std::make_unique<gpu::Capture>();
   outputs_->checkWritable();
   for (const std::string& file : {options_.timings, options_.trace})
     if (!file.empty()) checkTextWritable(file);
@@ -163,10 +173,24 @@ void Render::loadInputs() {
   stopIfInterrupted();
 }
 
+void Render::openDevice() {
+  try {
+    device_ =
+        gpu::openDevice({.device = options_.device,
+                         .without = options_.without,
+                         .validation = options_.validation ? gpu::Validation::On : gpu::Validation::Off});
+  } catch (const Error& e) {
+    if (!capture_ || e.code() != ExitCode::NoDevice) throw;
+    std::vector<Diagnostic> messages = e.diagnostics();
+    messages.back().remedy =
+        "RenderDoc lets only those devices be used that have bufferDeviceAddressCaptureReplay, as GPUs do: "
+        "choose one, or leave out --capture";
+    throw Error(e.code(), std::move(messages));
+  }
+}
+
 void Render::buildPlan() {
-  device_ = gpu::openDevice({.device = options_.device,
-                             .without = options_.without,
-                             .validation = options_.validation ? gpu::Validation::On : gpu::Validation::Off});
+  openDevice();
   session::GraphRun::Options run;
   run.size = size_;
   run.seed = options_.seed;
@@ -221,6 +245,16 @@ void Render::showFovea() {
 
 void Render::submit(uint64_t index, bool readOutputs) { run_->submit(run_->frame(index), readOutputs); }
 
+// The capture holds nothing but this frame: those before it have ended, and the next one begins when it has.
+void Render::capture(uint64_t index, bool readOutputs) {
+  while (auto result = run_->executor().next()) take(std::move(*result));
+  capture_->begin();
+  submit(index, readOutputs);
+  while (auto result = run_->executor().next()) take(std::move(*result));
+  files_.push_back(fmt::format("{}-{}-{}.rdc", description_.name, scene_.name, index));
+  capture_->end(files_.back());
+}
+
 image::Metadata Render::metadata(uint64_t index) const {
   const scene::Frame shown = run_->frame(index);
   std::string set;
@@ -268,7 +302,12 @@ void Render::renderFrames() {
   uint64_t index = 0;  // since the first frame of the run
   for (; index < total && !interrupted(); ++index) {
     const bool keep = outputs_->hasSequence() || index + 1 == total || lastWallMs_ > kSlowFrameMs;
-    submit(options_.first + index, pictures && keep && index >= options_.warmup);
+    const uint64_t frame = options_.first + index;
+    const bool read = pictures && keep && index >= options_.warmup;
+    if (frame == options_.capture)
+      capture(frame, read);
+    else
+      submit(frame, read);
     takeFinished();
   }
   while (auto result = run_->executor().next()) take(std::move(*result));
@@ -330,6 +369,11 @@ ExitCode Render::run() {
   writeResults();
   warnOfLightBeyondRange();
   report();
+  if (!outputs_->withoutNumbers().empty())
+    throw Error(
+        ExitCode::Internal,
+        fmt::format("no pixel of the output `{}` is a number (NaN)", *outputs_->withoutNumbers().begin()),
+        "a pass divides by zero or reads what nothing wrote: `fovea view` shows what each pass makes");
   const std::vector<std::string> validation = device_->validationMessages();
   if (!validation.empty())
     throw Error(ExitCode::Internal, fmt::format("the validation layers object {} times, first: {}",
@@ -351,6 +395,11 @@ void addOutputOptions(CLI::App& command, RenderOptions& options) {
       ->type_name("FILE");
   command.add_option("--trace", options.trace, "Trace of passes and frames for ui.perfetto.dev")
       ->type_name("FILE.json");
+  command
+      .add_option("--capture", options.capture,
+                  "Frame of which RenderDoc makes a capture, GRAPH-SCENE-N.rdc; numbered as with --first")
+      ->type_name("N")
+      ->transform(wholeNumberBetween(0, UINT32_MAX));
   command.add_flag("-q,--quiet", options.quiet, "Print nothing but warnings and errors");
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "fovea/scene.h"
@@ -80,11 +81,62 @@ void printContents(const Scene& s, const scene::Geometry& geometry) {
        fmt::format("{} to {} m", formatPlace(s, geometry.boundsMin), formatPlace(s, geometry.boundsMax)));
 }
 
-ExitCode info(const std::string& name, const scene::LoadOptions& options) {
+nlohmann::json vectorJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+// The same in the author's coordinates, with numbers as numbers.
+nlohmann::json infoJson(const Scene& s, const scene::Geometry& geometry) {
+  nlohmann::json made{{"name", s.name},
+                      {"source", s.source},
+                      {"hash", formatHash(s.hash)},
+                      {"triangles", geometry.triangles.size()},
+                      {"moving_triangles", geometry.triangles.size() - geometry.staticTriangles},
+                      {"vertices", geometry.positions.size()},
+                      {"objects", geometry.objects.size()},
+                      {"materials", s.materials.size()},
+                      {"textures", s.textures.size()},
+                      {"exposure", s.exposure},
+                      {"bounds", nullptr},
+                      {"lights", nlohmann::json::array()},
+                      {"cameras", nlohmann::json::array()},
+                      {"animations", nlohmann::json::array()}};
+  if (!geometry.empty())
+    made["bounds"] = {vectorJson(scene::toAuthor(s, geometry.boundsMin)),
+                      vectorJson(scene::toAuthor(s, geometry.boundsMax))};
+  for (const scene::Light& light : s.lights) {
+    const char* kind = light.type == scene::LightType::Directional ? "directional"
+                       : light.type == scene::LightType::Point     ? "point"
+                                                                   : "spot";
+    made["lights"].push_back({{"name", light.name},
+                              {"type", kind},
+                              {"strength", vectorJson(light.color * light.intensity)},
+                              {"position", vectorJson(scene::toAuthor(s, light.position))},
+                              {"direction", vectorJson(light.direction)}});
+  }
+  for (const scene::Camera& c : s.cameras)
+    made["cameras"].push_back({{"position", vectorJson(scene::toAuthor(s, c.position))},
+                               {"direction", vectorJson(c.orientation * glm::vec3(0, 0, -1))},
+                               {"fov_degrees", glm::degrees(c.verticalFov)}});
+  for (const scene::Animation& a : s.animations)
+    made["animations"].push_back({{"name", a.name},
+                                  {"plays", a.plays},
+                                  {"channels", a.channels.size()},
+                                  {"seconds", scene::duration(a)}});
+  if (s.environmentMap)
+    made["environment"] = {{"width", s.environmentMap->width()}, {"height", s.environmentMap->height()}};
+  else
+    made["environment"] = vectorJson(s.environment);
+  return made;
+}
+
+ExitCode info(const std::string& name, const scene::LoadOptions& options, bool asJson) {
   Diagnostics messages;
   const Scene s = scene::load(name, messages, options);
   const scene::Geometry geometry = scene::flatten(s);
   printWarnings(messages);
+  if (asJson) {
+    fmt::print("{}\n", infoJson(s, geometry).dump(2));
+    return ExitCode::Ok;
+  }
   line("scene", s.name);
   if (!s.source.empty()) line("source", s.source);
   printContents(s, geometry);
@@ -128,8 +180,11 @@ void addScene(CLI::App& program, Action& action) {
   auto options = std::make_shared<scene::LoadOptions>();
   addFollowLinksOption(*infoCommand);
   addEnvironmentOption(*infoCommand, options->environment);
-  infoCommand->callback(
-      [name, options, &action] { action = [name, options] { return info(*name, *options); }; });
+  auto asJson = std::make_shared<bool>(false);
+  addJsonFlag(*infoCommand, *asJson);
+  infoCommand->callback([name, options, asJson, &action] {
+    action = [name, options, asJson] { return info(*name, *options, *asJson); };
+  });
   addSceneExport(*command, action);
 }
 

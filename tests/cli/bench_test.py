@@ -25,7 +25,7 @@ SUITE = {
 }
 
 
-class Suites(CliTest):
+class BenchSuites(CliTest):
     def suite(self, **changes):
         return self.write("tiny.json", {**SUITE, **changes})
 
@@ -50,6 +50,7 @@ class Suites(CliTest):
             self.assertGreater(result["error"]["fovea"]["noise_floor"], 0)
             self.assertGreater(result["error"]["whole"]["indirect_mse"], 0)
             self.assertGreater(result["error"]["indirect_light"], 0)
+            self.assertNotEqual(result["error"]["whole"]["scaled_indirect_mse"], result["error"]["whole"]["indirect_mse"])
             self.assertIsInstance(result["temporal"]["fovea"]["indirect_excess"], float)
             self.assertIsInstance(result["temporal"]["periphery"]["excess"], float)
             self.assertGreater(result["time"]["frame"]["wall_ms"]["median"], 0)
@@ -375,7 +376,7 @@ class Suites(CliTest):
         self.assertFalse(list(disk.glob("out/results/*")))
 
 
-class Passes(CliTest):
+class BenchPasses(CliTest):
     COMMON = ["bench", "passes", "--graph", "direct", "--scene", "cornellbox", "--size", "32x32", "--frames", "3", "--warmup", "1", "--repeats", "3"]
 
     def test_table_and_baseline(self):

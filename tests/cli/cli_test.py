@@ -47,7 +47,7 @@ class Usage(CliTest):
             "compare-sequence": ["compare-sequence", "a", "b"],
             "export": ["scene", "export", "cornellbox", "-o", "out"]}
         options = {
-            "render": ["frames", "warmup", "first", "seed", "gaze-gap", "fovea-radius", "fovea-degrees",
+            "render": ["frames", "warmup", "first", "seed", "capture", "gaze-gap", "fovea-radius", "fovea-degrees",
                        "pixels-per-degree", "jitter", "frame-limit"],
             "view": ["frames", "seed", "port", "frame-limit", "fovea-degrees"],
             "bench": ["seeds", "frames", "warmup", "first", "repeats", "threshold", "frame-limit", "shard"],
@@ -143,7 +143,7 @@ class Inputs(CliTest):
             self.write("graph.json", {"extends": "ir_1000.json", "parameters": {"vpl_count": value}})
             self.fails(BAD_INPUT, "check", "graph.json", says=["a whole number from 1 to 65536"])
         for value in ("nan", "0x10", "+500", "0500", " 500", "500 ", "inf", ""):
-            self.fails(BAD_INPUT, "check", "ir_1000", "--set", f"vpl_count={value}", says=["is a number, not"])
+            self.fails(BAD_INPUT, "check", "ir_1000", "--set", f"vpl_count={value}", says=["a whole number from 1 to"])
 
     def test_all_mistakes_of_a_graph_at_once(self):
         self.write("graph.json", {

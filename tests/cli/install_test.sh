@@ -15,7 +15,7 @@ for file in bin/fovea share/fovea/graphs/direct.json share/fovea/shaders share/f
 done
 
 (cd "$prefix/include" && find . -name '*.h' | sort) >"$work/headers"
-printf './fovea/%s.h\n' declaration device error graph image pass passes registration scene scenes session test |
+printf './fovea/%s.h\n' compare declaration device document error graph image pass passes registration scene scenes session test |
   diff - "$work/headers" || { echo "the installation holds other headers than the facade"; exit 1; }
 while read -r header; do
   echo "#include \"$header\"" >"$work/header.cpp"

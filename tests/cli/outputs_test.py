@@ -29,6 +29,23 @@ class Outputs(CliTest):
         self.assertNotIn("pass", run.stderr)
         self.succeeds(*DIRECT, "-q", "--timings", "t.json", env=alone)
 
+    def test_pictures_without_a_number(self):
+        """They end with an error, also where the file shows what is no number as black; the files are written."""
+        (self.folder / "passes").mkdir()
+        self.write("passes/broken.frag", "uniform texture2D picture;\nlayout(location = 0) out vec4 image;\n"
+                   "void main() { image = texelFetch(picture, ivec2(0), 0) * uintBitsToFloat(0x7fc00000u); }\n")
+        self.write("passes/broken.pass.json", {
+            "doc": "makes what is no number", "inputs": {"picture": "any"},
+            "outputs": {"image": {"doc": "NaN", "format": "rgba16f"}},
+            "steps": [{"shader": "broken.frag", "colors": ["image"]}]})
+        self.graph(version=2, passes={"broken": {"type": "broken", "inputs": {"picture": "direct"}},
+                                      "tonemap": {"inputs": {"radiance": "broken"}}}, outputs={"radiance": "broken"})
+        for name in ("a.png", "a.exr"):
+            run = self.call("render", "graph.json", "--scene", "cornellbox", *SMALL, "-o", name)
+            self.assertEqual(run.returncode, 1, run.stderr)
+            self.assertIn("no pixel of the output `radiance` is a number", run.stderr)
+            self.assertTrue((self.folder / name).exists())
+
     def test_one_file_for_two_outputs(self):
         (self.folder / "sub").mkdir()
         os.symlink("a.png", self.folder / "link.png")

@@ -23,17 +23,21 @@ sys.dont_write_bytecode = True
 from page import motion, panels  # noqa: E402
 from page.fit import fitted  # noqa: E402
 from page.results import mean_of  # noqa: E402
-from page.sweeps import (COSINE_SEQUENCES, COSINE_STILLS, COUNTS, MAPS, PARAMETERS, RADII,  # noqa: E402
-                         SECOND_EYE, SEQUENCES, SPEED, STILLS, TIMES, UNCLAMPED)
+from page.readings import CHOICE_TEXTS  # noqa: E402
+from page.sweeps import (CHOICES, COSINE_SEQUENCES, COSINE_STILLS, COUNTS, MAPS, PARAMETERS, RADII,  # noqa: E402
+                         REUSE, SCALED, SECOND_EYE, SEQUENCES, SPEED, STILLS, TIMES, UNCLAMPED)
 from page.text import anchor, short  # noqa: E402
 from page.verdict import FAILS, HOLDS, MISSING, UNDECIDED, claim, is_at_least, is_less  # noqa: E402
 
 METHODS = ("ir_1000", "ir_v", "ours_r", "ours")
-TITLES = ["Table 1", "Table 2", "Figure 1", *(f"Figure {i}" for i in range(3, 11)), "Prose"]
+TITLES = ["Table 1", "Table 2", "Figure 1", *(f"Figure {i}" for i in range(3, 11)), "Prose",
+          "The size of the scenes, and a baseline that differs in its VPLs alone", "Reuse by importance and at random",
+          "What each choice costs that the text leaves open"]
 
 
 def error(mse, light=1.0):
-    region = {"mse": mse, "flip": 10 * mse, "indirect_mse": mse / 2, "direct_floor": mse / 10}
+    region = {"mse": mse, "flip": 10 * mse, "indirect_mse": mse / 2, "scaled_indirect_mse": mse / 4,
+              "direct_floor": mse / 10}
     return {"fovea": region, "periphery": region, "indirect_light": light, "disc": [16, 16, 8]}
 
 
@@ -49,7 +53,7 @@ def time(ms, passes=(), **more):
         {"name": name, "gpu_ms": spread(value), "cpu_ms": spread(0)} for name, value in dict(passes).items()]}
 
 
-class Decisions(unittest.TestCase):
+class PaperPageDecisions(unittest.TestCase):
     def test_less_of_one_seed(self):
         self.assertIs(is_less({1: 2.0}, {1: 3.0}), True)
         self.assertIs(is_less({1: 3.0}, {1: 2.0}), False)
@@ -90,7 +94,7 @@ class Decisions(unittest.TestCase):
         self.assertEqual(anchor("Figure 5: a, b and c"), "#figure-5-a-b-and-c")
 
 
-class Bias(unittest.TestCase):
+class PaperPageBias(unittest.TestCase):
     COUNTS = (250, 500, 1000, 2000, 4000)
 
     def test_known_parts_are_found(self):
@@ -119,7 +123,7 @@ class Bias(unittest.TestCase):
         self.assertIsNone(fitted([(250, 0.1), (1000, -0.001)]))
 
 
-class Motion(unittest.TestCase):
+class PaperPageMotion(unittest.TestCase):
     def test_a_thing_that_crosses_the_picture(self):
         """It moves by half the width of a view of 90 degrees in a second."""
         scene = {"camera": {"fov_deg": 90, "path": [{"t": 0, "eye": [0, 0, 4], "target": [0, 0, 0]}]},
@@ -139,7 +143,7 @@ class Motion(unittest.TestCase):
         self.assertIsNone(motion.pixels_per_frame("no_such_scene", 42, 40, 16, 1024))
 
 
-class Page(ToolTest):
+class PaperPagePage(ToolTest):
     script = "paper.py"
 
     def setUp(self):
@@ -301,6 +305,45 @@ class Page(ToolTest):
             sentence = self.sentence(self.page(), start)
             self.assertIn(verdict, sentence)
             self.assertEqual("no method" in sentence, reference > 6e-5)
+
+    def test_enlarged_scenes(self):
+        """Bias at that size, and ratios to both baselines; the light of one of them is scaled first."""
+        setting = {"clamp_distance": 0.1875, "vpl_count": 250}
+        for count, instant in ((250, 7e-3), (1000, 4e-3)):  # b = 3e-3, v = 1
+            setting["vpl_count"] = count
+            self.result(SCALED, "room", "ir_1000", varied=setting, error=error(instant))
+            self.result(SCALED, "room", "ir_same", varied=setting, error=error(3e-3))
+            self.result(SCALED, "room", "ours", varied=setting, error=error(1e-3 if count == 1000 else 1))
+        self.result(STILLS, "room", "ours", error=error(3e-3))
+        self.result(STILLS, "room", "ir_1000", error=error(4e-3))
+        self.result(STILLS, "room", "ir_same", error=error(5e-3))
+        page = self.page()
+        self.assertIn("1.5 m in one 8 times as large", page)
+        self.assertIn("| `room` | - | 75% | 0.75 | 0.25 | 1.2 | 0.667 |", page)
+        self.assertRegex(self.sentence(page, "In enlarged scenes"), r"Holds here.*0\.25 on the mean of 1 scene\b")
+        self.assertRegex(self.sentence(page, "In the fovea, Ours has less error of the indirect light than the same"),
+                         r"Does not hold here.*1\.2 on the mean of 1 scene\b")
+
+    def test_reuse_at_random(self):
+        for random, verdict in ((2e-3, "**Holds here**"), (0.5e-3, "**Does not hold here**")):
+            self.names.clear()
+            self.result(REUSE, "room", "ours", temporal=temporal(1e-3))
+            self.result(REUSE, "room", "ours_r", temporal=temporal(random))
+            page = self.page()
+            self.assertIn(f"| `room` | 0.25 | {short(250 * random)} |", page)
+            self.assertIn(verdict, self.sentence(page, "With one area for all VPLs"))
+
+    def test_choices(self):
+        """Every label of the sweep has a row."""
+        suite = json.loads((BENCHMARKS / "suites/paper.json").read_text())
+        sweep = next(s for s in suite["sweeps"] if s["name"] == CHOICES)
+        labels = [g if isinstance(g, str) else g.get("label", g["graph"]) for g in sweep["graphs"]]
+        self.assertEqual(labels, ["ours", *CHOICE_TEXTS])
+        for factor, label in enumerate(labels, 1):
+            self.result(CHOICES, "room", label, error=error(1e-3 * factor, light=1 / factor))
+        page = self.page()
+        for factor, text in enumerate(CHOICE_TEXTS.values(), 2):
+            self.assertIn(f"| {text} | {factor} ({short(1 / factor)}) |", page)
 
     def test_every_picture_is_linked_and_the_folder_is_small(self):
         self.stills()

@@ -27,6 +27,7 @@ ROOMS = {
     "framework/graph": ["framework/gpu", "framework/image"],
     "framework/host": ["framework/graph", "framework/scene"],
     "framework/session": ["framework/graph", "framework/scene"],
+    "framework/python": ["framework/session", "passes/include", "samples/scenes/builtin/include"],
     "passes/include": [],
     "passes": ["framework/graph", "framework/scene", "shaders", "passes/include"],
     "benchmarks/runner": ["framework/session"],
@@ -126,7 +127,7 @@ class Rooms(unittest.TestCase):
         passes = sorted({p.parts[1] for p in tracked() if p.parts[0] == "passes" and len(p.parts) > 2} - {"include"})
         scenes = re.findall(r'FOVEA_SCENE\("(\w+)"', "".join(
             read(p) for p in tracked() if str(p).startswith("samples/scenes/builtin/")))
-        scenes += [p.stem for p in (SOURCE / "samples/scenes").glob("*.json")]
+        scenes += [p.stem for p in (SOURCE / "samples/scenes").rglob("*.json")]
         self.assertGreater(len(passes), 25)
         self.assertGreater(len(scenes), 5)
         found = []
@@ -155,7 +156,7 @@ class Rooms(unittest.TestCase):
     def test_the_top_level_holds_nothing_else(self):
         files = {p.name for p in tracked() if len(p.parts) == 1 and not p.name.startswith(".")}
         self.assertEqual(files, {"CHANGELOG.md", "CMakeLists.txt", "CMakePresets.json", "CONTRIBUTING.md", "LICENSE",
-                                 "README.md", "SECURITY.md"})
+                                 "README.md", "SECURITY.md", "pyproject.toml"})
 
 
 class Sizes(unittest.TestCase):

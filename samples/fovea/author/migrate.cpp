@@ -1,8 +1,6 @@
 // The command `fovea migrate`: rewrites graph files of earlier versions.
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "framework/base/text_file.h"
@@ -18,17 +16,10 @@ struct MigrateOptions {
   bool check = false;
 };
 
-std::string read(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw Error(ExitCode::BadInput, file + " cannot be read", "give the path of a graph file");
-  return text;
-}
-
 ExitCode migrate(const MigrateOptions& options) {
   bool old = false;
   for (const std::string& file : options.files) {
-    const std::string text = read(file);
+    const std::string text = readText(file, "graph file");
     std::vector<graph::Change> changes;
     const std::string migrated = graph::migrateText(text, file, changes);
     for (const graph::Change& change : changes)

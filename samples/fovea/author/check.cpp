@@ -7,6 +7,7 @@
 #include "framework/base/paths.h"
 #include "framework/gpu/shader/disk_cache.h"
 #include "framework/graph/compile/compile.h"
+#include "framework/graph/edit/strict.h"
 #include "framework/graph/report/report.h"
 #include "framework/scene/scene.h"
 #include "framework/session/graph_run.h"
@@ -19,8 +20,22 @@ namespace {
 struct CheckOptions {
   GraphOptions graph;
   std::string plan, size = "1024x1024";
-  bool merged = false;
+  bool merged = false, strict = false;
 };
+
+// Whatever has no effect in the file is an error, so that automated checks can refuse it.
+void refuseWarnings(const CheckOptions& options, Diagnostics messages) {
+  const std::vector<std::filesystem::path> folders = dataFolders("graphs");
+  const std::filesystem::path file = graph::findGraph(options.graph.graph, folders);
+  graph::warnAboutRepetition(file, {{}, folders}, messages);
+  std::vector<Diagnostic> errors = messages.list();
+  std::erase_if(errors, [&](const Diagnostic& d) {  // what the files that it extends say is not its own
+    return d.where.line > 0 && d.where.file != file.string();
+  });
+  if (errors.empty()) return;
+  for (Diagnostic& d : errors) d.severity = Severity::Error;
+  throw Error(ExitCode::BadInput, std::move(errors));
+}
 
 ExitCode check(const CheckOptions& options) {
   if (options.merged && !options.graph.set.empty())
@@ -39,6 +54,7 @@ ExitCode check(const CheckOptions& options) {
   };
   const graph::Plan plan = graph::compile(bound, compileOptions);
   graph::warnAboutPlan(plan, messages);
+  if (options.strict) refuseWarnings(options, messages);
   printWarnings(messages);
   if (options.merged) {
     fmt::print("{}", json::print(graph::loadMerged(options.graph.graph, {{}, dataFolders("graphs")})));
@@ -72,6 +88,9 @@ void addCheck(CLI::App& program, Action& action) {
   command
       ->add_flag("--merged", options->merged, "Print the graph with all that it extends merged in, as JSON")
       ->excludes(plan);
+  command->add_flag("--strict", options->strict,
+                    "Refuse what the graph says in vain: parameters that nothing uses, passes that\nnothing "
+                    "needs, values that it inherits as well");
   command->add_option("--size", options->size, "Picture size the plan is for; default 1024x1024")
       ->type_name("WxH");
   command->callback([options, &action] { action = [options] { return check(*options); }; });
