@@ -9,7 +9,7 @@ import sys
 
 sys.dont_write_bytecode = True  # the modules lie in the source tree
 from report import Report  # noqa: E402
-from page import figures, table_entries, times  # noqa: E402
+from page import figures, readings, table_entries, times  # noqa: E402
 from page.results import Results  # noqa: E402
 from page.text import anchor, one_or_many  # noqa: E402
 from page.verdict import FAILS, HOLDS, MISSING, UNDECIDED  # noqa: E402
@@ -19,12 +19,12 @@ HEADINGS = {FAILS: "Do not hold in every scene", HOLDS: "Hold in every scene",
 
 
 def entries(results, folder):
-    """Every table and figure of the paper in its order; Figure 2 is a diagram. Prose comes last."""
+    """Every table and figure of the paper in its order; Figure 2 is a diagram. Then its prose, and what it leaves open."""
     return [table_entries.table1(results), table_entries.table2(results),
             *(make(results, folder) for make in (figures.figure1, figures.figure3, figures.figure4, figures.figure5,
                                                  figures.figure6, figures.figure7, figures.figure8, figures.figure9,
                                                  times.figure10)),
-            times.moving_plane(results)]
+            times.moving_plane(results), readings.scale(results), readings.reuse(results), readings.choices(results)]
 
 
 def summary(found):
@@ -34,7 +34,7 @@ def summary(found):
     count = {verdict: len(list_) for verdict, list_ in claims.items()}
     lines = [f"Of {sum(count.values())} claims, **{count[FAILS]} do not hold in every scene, {count[HOLDS]} hold in "
              f"all**, {count[UNDECIDED]} are undecided and {count[MISSING]} not measured yet. They are those of the "
-             "paper's tables and text, and what its figures are there to show."]
+             "paper's tables and text, what its figures are there to show and, last, what it leaves open."]
     for verdict, heading in HEADINGS.items():
         if claims[verdict]:
             lines.append(f"{heading} ({count[verdict]}):")

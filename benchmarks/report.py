@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """One self-contained page from the results of `fovea bench`: tables next to the paper's numbers, plots, pictures, error pictures, zooms.
 
-Usage: benchmarks/report.py DIR    (fovea bench calls it; DIR holds report.json, results, tables and pictures)
-Writes DIR/report.html and DIR/plots/*.png. Exit code 9 without matplotlib.
+Usage: benchmarks/report.py DIR [--against OTHER]    (fovea bench calls it; DIR holds report.json, results, tables and pictures)
+Writes DIR/report.html, DIR/plots as PNG, SVG and PDF, and DIR/tables/*.tex. With --against, the page also says what differs
+from another run. Exit code 9 without matplotlib.
 """
 import base64
 import csv
@@ -12,63 +13,36 @@ import json
 import math
 import os
 import pathlib
+import re
 import sys
 
 try:
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-    import matplotlib.ticker
 except ImportError:
     if sys.executable != "/usr/bin/python3" and os.path.exists("/usr/bin/python3"):  # Debian's, where the package is
         os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
     print("report.py: matplotlib is missing", file=sys.stderr)
     sys.exit(9)
 
-# name -> (heading, factor, explanation); the paper gives its errors times 1000.
-MEASURES = {
-    "error.fovea.mse": ("MSE fovea ×10⁻³", 1e3, "mean square error of the displayed picture inside the foveal circle, reference noise subtracted"),
-    "error.fovea.mse_over_ours": ("more than ours ×10⁻³", 1e3, "MSE in the fovea less that of ours, seed by seed: above its ±, ours is better"),
-    "error.periphery.mse": ("MSE periphery ×10⁻³", 1e3, "the same outside it"),
-    "error.light": ("light", 1, "sum of the compared radiance over the whole picture, as a part of the reference's"),
-    "error.fovea.relmse": ("relMSE indirect fovea", 1, "relative square error of the indirect radiance alone"),
-    "error.periphery.relmse": ("relMSE indirect periphery", 1, "the same outside the fovea"),
-    "error.fovea.flip": ("FLIP fovea", 1, "visible difference when one picture replaces the other, 0 to 1"),
-    "error.fovea.blocks": ("blocks fovea", 1, "how much more neighbouring pixels differ across the lines of lattices of 8 and 16 pixels than beside them, relative to the reference; 1 without blocks"),
-    "error.periphery.blocks": ("blocks periphery", 1, "the same outside the fovea"),
-    "error.fovea.direct_floor": ("direct floor fovea ×10⁻³", 1e3, "the MSE that would remain with perfect indirect light"),
-    "temporal.fovea.mse_prime": ("MSE' fovea ×10⁻³", 1e3, "mean square change between consecutive frames (the paper's Eq. 4); contains the scene's own motion, so the best value is the reference's"),
-    "temporal.fovea.reference_mse_prime": ("MSE' fovea of the reference ×10⁻³", 1e3, "the same of the reference, less its noise: the scene's motion alone"),
-    "temporal.periphery.mse_prime": ("MSE' periphery ×10⁻³", 1e3, "the same outside the fovea"),
-    "temporal.periphery.reference_mse_prime": ("MSE' periphery of the reference ×10⁻³", 1e3, "of the reference, outside the fovea"),
-    "temporal.fovea.excess": ("excess fovea ×10⁻³", 1e3, "mean square of (change of the sequence - change of the reference): flicker without the scene's motion"),
-    "temporal.fovea.excess_over_ours": ("excess more than ours ×10⁻³", 1e3, "excess in the fovea less that of ours, seed by seed"),
-    "temporal.periphery.excess": ("excess periphery ×10⁻³", 1e3, "the same outside the fovea"),
-    "temporal.fovea.mse": ("MSE fovea, all frames ×10⁻³", 1e3, "mean over the frames of the sequence"),
-    "time.wall_ms": ("frame ms", 1, "wall time of a frame, median"),
-    "speed_up.ir_1000": ("speed-up over ir_1000", 1, "frame time of ir_1000 / of this graph"),
-    "speed_up.ir_eq": ("speed-up over ir_eq", 1, "frame time of instant radiosity with as small a foveal error / of this graph"),
-    "match.value": ("N of ir_eq", 1, "VPLs with which instant radiosity reaches the foveal error of ours, by bisection"),
-    "second_eye.ms": ("second eye ms", 1, "passes of the second eye"),
-    "second_eye.of_first": ("second eye / first", 1, "passes of the second eye over all others: the first eye's whole frame"),
-    "second_eye.new_pixels": ("new pixels", 1, "share of the second eye's pixels that the first one has not seen"),
-}
-NOTES = {"error.fovea.mse": "error.fovea.mse_over_ours", "temporal.fovea.excess": "temporal.fovea.excess_over_ours"}  # told inside the other's cell
-HIGHER = {"speed_up.ir_1000", "speed_up.ir_eq", "match.value"}
-NEUTRAL = {"error.fovea.direct_floor", "temporal.fovea.mse_prime", "temporal.periphery.mse_prime", "temporal.fovea.reference_mse_prime",
-           "temporal.periphery.reference_mse_prime", "match.value", "second_eye.ms", "second_eye.of_first", "second_eye.new_pixels"}
+sys.dont_write_bytecode = True  # the modules lie in the source tree
+from suite_page import plots, runs, tables  # noqa: E402
+from suite_page.measures import MEASURES, NOTES, badness, digits, number  # noqa: E402
+from suite_page.outliers import outliers  # noqa: E402
+from suite_page.settings import settings  # noqa: E402
+from suite_page.style import STYLE  # noqa: E402
+
 CSV_COLUMNS = {"scene", "graph", "measure", "mean", "half_width", "seeds", "paper", "ratio", "bound"}
-STYLE = """body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:1180px;padding:0 1em;color:#1b1b1f}
-table{border-collapse:collapse;margin:1em 0;font-size:13px}th,td{border-bottom:1px solid #ddd;padding:.3em .7em;text-align:right;vertical-align:top}
-th{background:#f3f3f6}td:first-child,th:first-child,.names td:nth-child(2),.names th:nth-child(2){text-align:left}small{color:#667;display:block}
-figure{display:inline-block;margin:.4em;vertical-align:top;max-width:100%}figcaption{font-size:13px;color:#445}.pixels{image-rendering:pixelated}
-img{max-width:100%}.grid{overflow-x:auto}.num td{white-space:nowrap}.num th{vertical-align:bottom;max-width:7.5em}.steps th{max-width:none}.best{font-weight:bold}
-.first td{border-top:2px solid #889}.pics td{border:0;padding:.15em;text-align:left;white-space:normal}.pics td:first-child{max-width:7em;color:#445}.pics img{display:block}
-td.text{text-align:left;white-space:normal}.warn{background:#fff3d6;padding:.6em 1em;border-radius:6px}code{background:#f3f3f6;padding:0 .3em}"""
 
 
-def data_url(data):
-    return "data:image/png;base64," + base64.b64encode(data).decode()
+def data_url(data, kind="png"):
+    return f"data:image/{kind};base64," + base64.b64encode(data).decode()
+
+
+def prose(text):
+    """A description in HTML, whose `names` are set as code."""
+    return re.sub("`([^`]+)`", r"<code>\1</code>", html.escape(text))
 
 
 class Report:
@@ -90,7 +64,7 @@ class Report:
         first = self.results[0]
         devices = sorted({r["made_with"]["device"] for r in self.results})
         commits = sorted({r["commit"] or "?" for r in self.results})
-        self.add(f"<h1>Benchmark <code>{html.escape(self.head['suite'])}</code></h1><p>{html.escape(self.head['description'])}</p>")
+        self.add(f"<h1>Benchmark <code>{html.escape(self.head['suite'])}</code></h1><p>{prose(self.head['description'])}.</p>")
         cpu = any("llvmpipe" in d for d in devices)
         self.add("<p>Device: " + html.escape("; ".join(devices)) + (
             ". This is lavapipe, Vulkan in software on the processor: its times, and the ratios between them, "
@@ -114,11 +88,11 @@ class Report:
                 text = f"graph {job['graph']}: {text}"
             rows.setdefault(job["label"], text)
         self.add("<h2>What is compared</h2><table>" + "".join(
-            f"<tr><td><b>{html.escape(k)}</b></td><td class=text>{html.escape(v)}</td></tr>" for k, v in rows.items()) + "</table>")
+            f"<tr><td><b>{html.escape(k)}</b></td><td class=text>{prose(v)}</td></tr>" for k, v in rows.items()) + "</table>")
 
     def explanation(self, names):
-        rows = "".join(f"<tr><td><b>{html.escape(MEASURES[n][0])}</b></td><td class=text>{html.escape(MEASURES[n][2])}"
-                       f"{'' if n in NEUTRAL else '; higher is better' if n in HIGHER else '; lower is better'}</td></tr>" for n in MEASURES if n in names and n not in NOTES.values())
+        rows = "".join(f"<tr><td><b>{html.escape(MEASURES[n].heading)}</b></td><td class=text>{html.escape(MEASURES[n].text)}; "
+                       f"{MEASURES[n].better}</td></tr>" for n in MEASURES if n in names and n not in NOTES.values())
         self.add("<h2>What the numbers mean</h2><p>Displayed picture: sRGB(clamp(exposure × radiance)). The fovea is a circle around where the "
                  "eye looks; references are path-traced, and their own noise is measured from two halves and subtracted, which can leave a "
                  "small error slightly below 0. Errors have no unit; ×10⁻³: the table's number is 1000 times the value. <b>±</b>: half width of the "
@@ -133,47 +107,35 @@ class Report:
         with open(self.folder / "tables" / f"{sweep}.csv", newline="") as file:
             return list(csv.DictReader(file))
 
-    def settings(self, sweep):
-        jobs = [r["job"] for r in self.results if r["job"]["sweep"] == sweep]
-        one = jobs[0]
-        sizes = sorted({tuple(j["size"]) for j in jobs})
-        last, seeds = one["first"] + one["frames"] - 1, len({j["seed"] for j in jobs})
-        frames = f"frames {one['first']} to {last}" if one["frames"] > 1 else f"frame {last}"
-        text = "Errors are those of the last frame. " if "error" in one["measures"] and one["frames"] > 1 else ""
-        text += f"{', '.join(f'{w}×{h}' for w, h in sizes)} pixels; {frames} of the scene's animation at {one['frame_rate']:g} frames per second, " \
-                f"after {one['warmup']} frames to warm up; {seeds} seed{'s' if seeds > 1 else ''}"
-        if "reference" in one:
-            text += f"; reference: {one['reference']['spp']} samples per pixel, depth {one['reference']['depth']}"
-        fixed = {k: v for k, v in one["set"].items() if k not in one["varied"]}
-        shared = {k: v for k, v in fixed.items() if all(j["set"].get(k) == v for j in jobs)}
-        if shared:
-            text += "; " + ", ".join(f"{k} = {v}" for k, v in shared.items())
-        return text + ". The same for every graph."
-
     def cell(self, row, name, best, note):
-        factor = MEASURES[name][1]
-        number = lambda text: f"{factor * float(text):.3g}" if abs(factor * float(text)) < 1000 else f"{factor * float(text):.0f}"
+        shown = lambda text: number(name, text)
         if not row or not row["mean"]:
             return "<td>-</td>"
-        spread = lambda r: f" ± {number(r['half_width'])}" if float(r["half_width"] or 0) > 0 else ""
+        spread = lambda r: f" ± {shown(r['half_width'])}" if float(r["half_width"] or 0) > 0 else ""
         bound = html.escape(row["bound"]) + " " if row.get("bound") else ""
-        text = f"<span{' class=best' if best else ''}>{bound}{number(row['mean'])}</span><small>{spread(row)}</small>"
+        text = f"<span{' class=best' if best else ''}>{bound}{shown(row['mean'])}</span><small>{spread(row)}</small>"
         if note and note["mean"]:
-            text += f"<small>ours {'better' if float(note['mean']) > 0 else 'worse'} by {number(note['mean'].lstrip('-'))}{spread(note)}</small>"
+            text += f"<small>ours {'better' if float(note['mean']) > 0 else 'worse'} by {shown(note['mean'].lstrip('-'))}{spread(note)}</small>"
         if row["paper"]:
             ratio = float(row["ratio"])
-            text += f"<small>Paper {number(row['paper'])} (×{f'{ratio:.2g}' if ratio < 100 else f'{ratio:.0f}'})</small>"
+            text += f"<small>Paper {shown(row['paper'])} (×{digits(ratio, 2)})</small>"
         return f"<td>{text}</td>"
 
     @staticmethod
     def best(name, rows):
-        """Of each scene and setting: the rows with the best mean, where there is something to compare."""
+        """Of each scene and setting: the row with the best mean, where there is something to compare."""
+        def place(row, columns):
+            return tuple(v for k, v in row.items() if k in columns or k not in CSV_COLUMNS)
         groups = {}
         for r in rows:
-            if r["measure"] == name and r["mean"] and name not in NEUTRAL:
-                groups.setdefault(tuple(v for k, v in r.items() if k == "scene" or k not in CSV_COLUMNS), []).append(r)
-        pick = max if name in HIGHER else min
-        return [pick(g, key=lambda r: float(r["mean"])) for g in groups.values() if len(g) > 1]
+            if r["measure"] != name or not r["mean"]:
+                continue
+            others = {o["measure"]: float(o["mean"]) for o in rows
+                      if o["mean"] and place(o, {"scene", "graph"}) == place(r, {"scene", "graph"})}
+            bad = badness(name, r, others)
+            if bad is not None:
+                groups.setdefault(place(r, {"scene"}), []).append((bad, r))
+        return [min(g, key=lambda pair: pair[0])[1] for g in groups.values() if len(g) > 1]
 
     def table(self, sweep, axes, rows):
         names = [n for n in MEASURES if any(r["measure"] == n and r["mean"] for r in rows)]
@@ -182,7 +144,7 @@ class Report:
         keys = list(dict.fromkeys((r["scene"], r["graph"], *(r[a] for a in axes)) for r in rows))
         cells = {((r["scene"], r["graph"], *(r[a] for a in axes)), r["measure"]): r for r in rows}
         text = "<div class=grid><table class='num names'><tr><th>scene</th><th>graph</th>" + "".join(f"<th>{html.escape(a)}</th>" for a in axes)
-        text += "".join(f"<th>{html.escape(MEASURES[n][0])}</th>" for n in shown) + "</tr>"
+        text += "".join(f"<th>{html.escape(MEASURES[n].heading)}</th>" for n in shown) + "</tr>"
         scene = None
         for key in keys:
             paper = self.paper_name(key[0])
@@ -195,118 +157,104 @@ class Report:
                 text += self.cell(row, n, any(row is b for b in best[n]), cells.get((key, NOTES.get(n))))
             text += "</tr>"
         self.add(text + "</table></div>")
+        (self.folder / "tables" / f"{sweep}.tex").write_text(
+            tables.latex(f"{self.head['suite']}, {sweep}: means and half the 95% interval over seeds", axes, keys, shown, cells, best))
         return set(names)
 
     # ---- Plots
 
     def figure(self, name, title):
-        plots = self.folder / "plots"
-        plots.mkdir(exist_ok=True)
-        memory = io.BytesIO()
-        plt.tight_layout()
-        plt.savefig(memory, format="png", dpi=110)
-        plt.close()
-        (plots / f"{name}.png").write_bytes(memory.getvalue())
-        self.add(f"<figure><img src='{data_url(memory.getvalue())}' alt='{html.escape(title)}'><figcaption>{html.escape(title)}</figcaption></figure>")
+        """Saves the current plot and shows it."""
+        vector = plots.save(self.folder / "plots", name)
+        self.add(f"<figure><img src='{data_url(vector.encode(), 'svg+xml')}' alt='{html.escape(title)}'>"
+                 f"<figcaption>{html.escape(title)}; <code>plots/{html.escape(name)}</code>.png, .svg, .pdf</figcaption></figure>")
 
-    def line_plots(self, sweep, axis, rows, names):
-        scenes = list(dict.fromkeys(r["scene"] for r in rows))
-        for name in (n for n in names if n in ("error.fovea.mse", "error.periphery.mse", "temporal.fovea.mse_prime", "temporal.fovea.excess",
-                                               "time.wall_ms")):
-            plt.figure(figsize=(1 + 3.4 * len(scenes), 3.1))
-            for i, scene in enumerate(scenes):
-                plt.subplot(1, len(scenes), i + 1)
-                for graph in dict.fromkeys(r["graph"] for r in rows):
-                    points = [(self.number(r[axis]), MEASURES[name][1] * float(r["mean"])) for r in rows
-                              if r["scene"] == scene and r["graph"] == graph and r["measure"] == name and r["mean"] and r[axis]]
-                    if points:
-                        plt.plot(*zip(*sorted(points)), marker="o", label=graph)
-                plt.title(scene, fontsize=9)
-                plt.xlabel(axis, fontsize=9)
-                plt.ylim(bottom=min(0, plt.ylim()[0]))
-                plt.legend(fontsize=7)
-                if i == 0:
-                    plt.ylabel(MEASURES[name][0], fontsize=9)
-            self.figure(f"{sweep}-{axis}-{name}", f"{MEASURES[name][0]} over {axis}; lower is better")
+    def plots_over(self, sweep, axis, rows, names):
+        for name in (n for n in names if n in plots.OVER_AXIS):
+            plots.lines(axis, self.number, rows, name)
+            self.figure(f"{sweep}-{axis}-{name}", self.title(f"{MEASURES[name].heading} over {axis}", name, rows))
 
-    def time_plots(self, sweep, axes, rows, names):
-        """Errors over the time of a frame: one curve a graph, each of whose points does another amount of work."""
-        scenes, graphs = (list(dict.fromkeys(r[k] for r in rows)) for k in ("scene", "graph"))
-        columns = min(3, len(scenes))
-        for name in (n for n in names if n in ("error.fovea.mse", "error.periphery.mse", "temporal.fovea.excess")):
-            plt.figure(figsize=(1 + 3.6 * columns, 3.2 * math.ceil(len(scenes) / columns)))
-            for i, scene in enumerate(scenes):
-                plt.subplot(math.ceil(len(scenes) / columns), columns, i + 1)
-                for number, graph in enumerate(graphs):
-                    found = {}  # in the order of the suite, so that a curve joins amounts of work that follow each other
-                    for r in (r for r in rows if r["scene"] == scene and r["graph"] == graph and r["mean"]):
-                        found.setdefault(tuple(r[a] for a in axes), {})[r["measure"]] = float(r["mean"])
-                    points = [(v["time.wall_ms"], MEASURES[name][1] * v[name]) for v in found.values() if v.get(name, 0) > 0]
-                    plt.loglog(*zip(*points or [(math.nan, math.nan)]), marker="o", markersize=4, label=graph, color=f"C{number}")
-                plt.title(scene, fontsize=9)
-                plt.xlabel(MEASURES["time.wall_ms"][0], fontsize=9)
-                plt.grid(alpha=0.3, which="both")
-                for axis in (plt.gca().xaxis, plt.gca().yaxis):
-                    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
-                    axis.set_major_formatter("{x:g}")
-                    axis.set_minor_formatter("")
-                if i % columns == 0:
-                    plt.ylabel(MEASURES[name][0], fontsize=9)
-                if i == 0:
-                    plt.legend(fontsize=7)
-            self.figure(f"{sweep}-time-{name}", f"{MEASURES[name][0]} over {MEASURES['time.wall_ms'][2]}; lower is better")
+    def plots_over_time(self, sweep, axes, rows, names):
+        for name in (n for n in names if n in plots.OVER_TIME):
+            plots.over_time(axes, rows, name)
+            self.figure(f"{sweep}-time-{name}",
+                        f"{MEASURES[name].heading} over {MEASURES['time.wall_ms'].text}; {MEASURES[name].better}")
+
+    def bar_plots(self, sweep, rows, names):
+        for name in (n for n in names if n in plots.AS_BARS):
+            plots.bars(rows, name)
+            self.figure(f"{sweep}-{name}", self.title(MEASURES[name].heading, name, rows))
+
+    @staticmethod
+    def title(what, name, rows):
+        intervals = any(float(r["half_width"] or 0) > 0 for r in rows if r["measure"] == name)
+        return f"{what}; {MEASURES[name].better}" + ("; lines: 95% interval over seeds" if intervals else "")
 
     @staticmethod
     def number(text):
         return float(text.split("x")[0])  # sizes: by width
 
-    def bar_plots(self, sweep, rows, names):
-        scenes, graphs = (list(dict.fromkeys(r[k] for r in rows)) for k in ("scene", "graph"))
-        for name in (n for n in names if n in ("error.fovea.mse", "error.periphery.mse", "temporal.fovea.excess", "time.wall_ms")):
-            plt.figure(figsize=(2 + 1.6 * len(scenes), 2.9))
-            found = {(r["scene"], r["graph"]): r for r in rows if r["measure"] == name and r["mean"]}
-            for i, graph in enumerate(graphs):
-                xs = [s + (i - (len(graphs) - 1) / 2) * 0.8 / len(graphs) for s, scene in enumerate(scenes) if (scene, graph) in found]
-                mine = [found[scene, graph] for scene in scenes if (scene, graph) in found]
-                factor = MEASURES[name][1]
-                spread = [factor * float(r["half_width"] or 0) if int(r["seeds"]) > 2 else 0 for r in mine]
-                plt.bar(xs, [factor * float(r["mean"]) for r in mine], 0.8 / len(graphs), label=graph, yerr=spread if any(spread) else None, capsize=2)
-            plt.xticks(range(len(scenes)), scenes, fontsize=8)
-            plt.xlim(-0.6, len(scenes) - 0.4)
-            plt.ylim(min(0, 1.2 * min(factor * float(r["mean"]) for r in found.values())), None)
-            plt.ylabel(MEASURES[name][0], fontsize=9)
-            plt.legend(fontsize=7)
-            self.figure(f"{sweep}-{name}", f"{MEASURES[name][0]}; lower is better" +
-                        ("; lines: 95% interval over seeds" if any(int(r["seeds"]) > 2 for r in found.values()) else ""))
-
-    def step_plot(self, sweep, axes):
-        """Stacked times of the passes, on the device or, for host passes, on the host."""
-        bars, steps = {}, {}
-        for r in self.results:
-            job = r["job"]
-            if job["sweep"] != sweep or job["seed"] != 1:
+    def passes(self, sweep, axes, rows):
+        """Times of the passes, on the device or, for host passes, on the host: means over seeds of medians over frames."""
+        bars = {}
+        for r in rows:
+            name, _, kind = r["measure"].removeprefix("pass.").rpartition(".")
+            if not r["measure"].startswith("pass.") or kind not in ("gpu_ms", "cpu_ms") or not r["mean"]:
                 continue
-            label = "\n".join([job["scene"], job["label"], *(str(job["varied"].get(a, "")) for a in axes)])
-            bars[label] = {p["name"]: max(p["gpu_ms"]["median"], p["cpu_ms"]["median"]) for p in r["time"]["passes"]}
-        for times in bars.values():
-            for step, ms in times.items():
-                steps[step] = max(steps.get(step, 0), ms / max(sum(times.values()), 1e-9))
+            label = "\n".join([r["scene"], r["graph"], *(r[a] for a in axes)])
+            times = bars.setdefault(label, {})
+            if name not in times or float(r["mean"]) > float(times[name]["mean"]):
+                times[name] = r
+        stacks = {label: {step: float(r["mean"]) for step, r in times.items()} for label, times in bars.items()}
+        if not stacks:
+            return
+
+        def cell(row):
+            if row is None:
+                return "<td>-</td>"
+            half = float(row["half_width"] or 0)
+            return f"<td>{digits(float(row['mean']))}<small>{f' ± {digits(half, 2)}' if half > 0 else ''}</small></td>"
         head = "".join(f"<th>{html.escape(b)}</th>" for b in bars)
-        rows = "".join(f"<tr><td>{html.escape(s)}</td>" + "".join(f"<td>{f'{t[s]:.3g}' if s in t else '-'}</td>" for t in bars.values()) + "</tr>" for s in steps)
-        self.add(f"<p>Milliseconds of every pass, median over frames, on the device or, for passes that work there, on the host; seed 1.</p>"
-                 f"<div class=grid><table class='num steps'><tr><th>pass</th>{head}</tr>{rows}</table></div>")
-        shown = [s for s in steps if steps[s] > 0.02]
-        plt.figure(figsize=(2.5 + 1.0 * len(bars), 4.2))
-        bottom = [0.0] * len(bars)
-        colours = plt.get_cmap("tab20").colors
-        for i, step in enumerate([*shown, "others"]):
-            heights = [t.get(step, 0) if step != "others" else sum(ms for s, ms in t.items() if s not in shown) for t in bars.values()]
-            plt.bar(range(len(bars)), heights, 0.7, bottom=bottom, label=step, color=colours[i % 20])
-            bottom = [b + h for b, h in zip(bottom, heights)]
-        plt.xticks(range(len(bars)), bars, fontsize=7)
-        plt.ylabel("ms per frame, by pass", fontsize=9)
-        plt.legend(fontsize=7, bbox_to_anchor=(1, 1), loc="upper left")
-        self.figure(f"{sweep}-steps", "time of every pass, median; seed 1")
+        body = "".join(f"<tr><td>{html.escape(s)}</td>" + "".join(cell(t.get(s)) for t in bars.values()) + "</tr>"
+                       for s in plots.cost(stacks))
+        total = "".join(f"<td><b>{digits(sum(t.values()))}</b></td>" for t in stacks.values())
+        self.add("<p>Milliseconds of every pass, on the device or, for passes that work there, on the host: means over seeds of "
+                 "medians over frames, the most expensive pass first.</p>"
+                 f"<div class=grid><table class='num steps'><tr><th>pass</th>{head}</tr>{body}<tr><td><b>all</b></td>{total}</tr></table></div>")
+        plots.stacked(stacks)
+        self.figure(f"{sweep}-passes", "time of every pass, mean over seeds; lower is better")
+
+    # ---- Two runs
+
+    def against(self, other):
+        """What differs from another run of the same sweeps."""
+        parts, same = [], 0
+        for sweep in self.head["sweeps"]:
+            file = other / "tables" / f"{sweep['sweep']}.csv"
+            if not file.exists():
+                continue
+            with open(file, newline="") as stream:
+                before = list(csv.DictReader(stream))
+            for key, name, old, new, verdict in runs.changes(before, self.rows(sweep["sweep"]), sweep["axes"]):
+                if name in NOTES.values():
+                    continue
+                if verdict == runs.SAME:
+                    same += 1
+                    continue
+                was = float(old["mean"])
+                change = f"{100 * (float(new['mean']) / was - 1):+.1f}%" if was else "-"
+                cells = [sweep["sweep"], " ".join(filter(None, key)), MEASURES[name].heading,
+                         *(f"{number(name, r['mean'])} ± {number(name, r['half_width'] or 0)}" for r in (old, new)), change, verdict]
+                parts.append("<tr>" + "".join(f"<td{' class=text' if i in (1, 2, 6) else ''}>{html.escape(c)}</td>"
+                                              for i, c in enumerate(cells)) + "</tr>")
+        self.add(f"<h2>Against <code>{html.escape(str(other))}</code></h2>")
+        if not parts:
+            self.add(f"<p>None of the {same} values that both runs have differs by more than their intervals together.</p>" if same
+                     else "<p>The two runs have no values in common.</p>")
+            return
+        self.add(f"<p>Means over seeds of both runs, where the two differ by more than their intervals together; {same} other values do "
+                 "not.</p><div class=grid><table class=num><tr><th>sweep</th><th>of</th><th>measure</th><th>other run</th>"
+                 "<th>this run</th><th>change</th><th></th></tr>" + "".join(parts) + "</table></div>")
 
     # ---- Pictures
 
@@ -339,7 +287,7 @@ class Report:
                 name = f"{sweep}-{pathlib.Path(scene).stem}-{job['label']}" + "".join(f"-{k}={v}" for k, v in job["varied"].items()) + "-s1"
                 names.append(name.replace("/", "_").replace(" ", "_"))
                 labels.append(", ".join([job["label"], *(f"{k} = {v}" for k, v in job["varied"].items())]))
-            width = max(240, min(420, 1040 // len(labels)))
+            width = max(180, min(420, 1040 // len(labels)))
             discs = [r.get("error", {}).get("disc") for r in mine]
             rows = {"picture": [self.picture(n, width) for n in names],
                     "half of the fovea, enlarged": [self.picture(n, width, d) if d else "" for n, d in zip(names, discs)],
@@ -360,18 +308,20 @@ class Report:
         rows = self.rows(sweep)
         if not rows:
             return set()
-        self.add(f"<h2>{html.escape(sweep)}</h2><p>{html.escape(self.settings(sweep))}</p>")
+        mine = [r for r in self.results if r["job"]["sweep"] == sweep]
+        self.add(f"<h2>{html.escape(sweep)}</h2><p>{html.escape(settings([r['job'] for r in mine]))}</p>")
+        for sentence in outliers(mine):
+            self.add(f"<p class=warn>{html.escape(sentence)}</p>")
         names = self.table(sweep, axes, rows)
         ordered = [n for n in MEASURES if n in names]
         numeric = [a for a in axes if all(self.is_number(r[a]) for r in rows if r[a])]
         if len(axes) == 1 and numeric:
-            self.line_plots(sweep, axes[0], rows, ordered)
+            self.plots_over(sweep, axes[0], rows, ordered)
         elif not axes:
             self.bar_plots(sweep, rows, ordered)
         elif self.each_has_an_axis_of_its_own(axes, rows):
-            self.time_plots(sweep, axes, rows, ordered)
-        if not any(n.startswith(("error", "temporal")) for n in names):
-            self.step_plot(sweep, axes)
+            self.plots_over_time(sweep, axes, rows, ordered)
+        self.passes(sweep, axes, rows)
         self.pictures(sweep)
         return names
 
@@ -386,9 +336,11 @@ class Report:
         except ValueError:
             return False
 
-    def write(self):
+    def write(self, other=None):
         self.introduction()
         self.graphs()
+        if other:
+            self.against(other)
         place = len(self.parts)
         used = set()
         for sweep in self.head["sweeps"]:
@@ -404,6 +356,6 @@ class Report:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
+    if len(sys.argv) not in (2, 4) or sys.argv[2:3] not in ([], ["--against"]):
         sys.exit(__doc__)
-    Report(pathlib.Path(sys.argv[1])).write()
+    Report(pathlib.Path(sys.argv[1])).write(pathlib.Path(sys.argv[3]) if len(sys.argv) == 4 else None)

@@ -6,3 +6,7 @@ PARAMETERS = "fig6_pictures"
 COSINE_STILLS, COSINE_SEQUENCES = "fig7_stills", "fig7_sequences"
 UNCLAMPED = "fig8_stills"
 SPEED = "speed"
+# Beyond the paper: what its text and its pictures leave open.
+SCALED = "scale_stills"
+REUSE = "reuse_sequences"
+CHOICES = "choices_stills"

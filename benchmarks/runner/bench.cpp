@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iostream>
 #include <memory>
 #include <set>
 
@@ -93,10 +94,12 @@ class Bench {
   void chooseJobs();
   void identify();
   std::vector<std::string> referencesToMake(const Job& job);
-  void refuseOrRemove(const Job& job, const std::string& key, const Fingerprint& now) const;
+  bool isDone(const ResultFiles& files, const Job& job, const std::string& key, const Fingerprint& now) const;
   void openDevice();
   std::optional<nlohmann::ordered_json> tryTwice(const Job& job, const Fingerprint& fingerprint);
   void measure();
+  void serve();
+  std::string serve(const std::string& name);
   void makeReferences();
   void finish();
   std::string command() const;
@@ -153,10 +156,15 @@ void Bench::chooseJobs() {
                 "see its jobs with --list");
 }
 
-// A result that was measured with other code or inputs must not be in a table with new ones.
-void Bench::refuseOrRemove(const Job& job, const std::string& key, const Fingerprint& now) const {
-  for (const StoredResult& old : folder_.results(job)) {
-    if (old.json["key"] == key) continue;
+// Whether the job has a result. One that was measured with other code or inputs must not be in a table with new ones.
+bool Bench::isDone(const ResultFiles& files, const Job& job, const std::string& key,
+                   const Fingerprint& now) const {
+  bool done = false;
+  for (const StoredResult& old : resultsOf(job, files)) {
+    if (old.json["key"] == key) {
+      done = true;
+      continue;
+    }
     if (options_.replace) {
       std::error_code ignored;
       fs::remove(old.file, ignored);
@@ -169,6 +177,7 @@ void Bench::refuseOrRemove(const Job& job, const std::string& key, const Fingerp
                             difference),
                 "choose another folder with -o, or measure it anew with --replace");
   }
+  return done;
 }
 
 // The names of those that do not exist yet, of which the estimate is told.
@@ -185,6 +194,7 @@ std::vector<std::string> Bench::referencesToMake(const Job& job) {
 
 // Finds every mistake in the jobs, and the jobs that are already done, before anything is rendered.
 void Bench::identify() {
+  const ResultFiles files = folder_.resultFiles();
   for (size_t i = 0; i < wanted_.size(); ++i) {
     const Job& job = *wanted_[i];
     std::string why;
@@ -195,9 +205,7 @@ void Bench::identify() {
                      why.c_str());
       continue;
     }
-    const std::string key = fingerprint->key(job);
-    refuseOrRemove(job, key, *fingerprint);
-    if (!folder_.results(job).empty()) {
+    if (isDone(files, job, fingerprint->key(job), *fingerprint)) {
       ++done_;
     } else if (i % shard_.count == shard_.index) {
       tasks_.push_back({&job, *fingerprint, referencesToMake(job)});
@@ -256,6 +264,36 @@ void Bench::measure() {
         session::formatDuration(since(jobStart)), left());
   }
   progress_.setPrefix("");
+}
+
+// The answer to the name of a job; the device and the scene stay for the next one.
+std::string Bench::serve(const std::string& name) {
+  const auto found =
+      std::find_if(wanted_.begin(), wanted_.end(), [&](const Job* j) { return j->name() == name; });
+  if (found == wanted_.end())
+    throw Error(ExitCode::Usage, fmt::format("suite `{}` has no job `{}`", suite_.name, name),
+                "see its jobs with --list");
+  const Job& job = **found;
+  std::string why;
+  const auto fingerprint = runner_->fingerprint(job, why);
+  if (!fingerprint) return "missing " + name;
+  const std::string key = fingerprint->key(job);
+  if (!isDone(folder_.resultFiles(), job, key, *fingerprint)) {
+    const Clock::time_point start = Clock::now();
+    auto result = tryTwice(job, *fingerprint);
+    if (!result) throw Error(ExitCode::DeviceLost, fmt::format("job `{}` lost the device twice", name));
+    (*result)["seconds"] = std::chrono::duration<double>(Clock::now() - start).count();
+    folder_.write(job, key, *result);
+  }
+  progress_.clear();
+  return "done " + name;
+}
+
+void Bench::serve() {
+  for (std::string name; std::getline(std::cin, name);) {
+    fmt::print("{}\n", serve(name));
+    std::fflush(stdout);
+  }
 }
 
 // Makes the references of the chosen jobs and nothing else; a shard makes every N-th of them.
@@ -384,6 +422,10 @@ ExitCode Bench::run() {
   openDevice();
   if (options_.referencesOnly) {
     makeReferences();
+    return ExitCode::Ok;
+  }
+  if (options_.serve) {
+    serve();
     return ExitCode::Ok;
   }
   identify();

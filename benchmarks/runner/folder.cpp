@@ -34,6 +34,9 @@ constexpr auto kTouch = 10s;
 // Likewise a claim that names no owner for this long: the owner was killed before it wrote its name.
 constexpr auto kNameless = 5s;
 
+constexpr size_t kKeyDigits = 16;                   // Fingerprint::key()
+constexpr size_t kEnding = 1 + kKeyDigits + 1 + 4;  // of the name of a result, ".KEY.json"
+
 [[noreturn]] void cannotWrite(const fs::path& where, const std::string& reason) {
   throw Error(ExitCode::CannotWrite, "cannot write to `" + where.string() + "`: " + reason,
               "choose another folder with -o, or make room and permission there");
@@ -161,21 +164,29 @@ void BenchFolder::prepare(uint64_t bytes, uint64_t referenceBytes) const {
   if (!oneDisk) demand(cache_, cacheRoom, referenceBytes);
 }
 
-std::vector<StoredResult> BenchFolder::results(const Job& job) const {
-  std::vector<StoredResult> found;
+ResultFiles BenchFolder::resultFiles() const {
+  ResultFiles files;
   std::error_code ignored;
-  const std::string start = job.name() + ".";
   for (fs::directory_iterator entry(folder_ / "results", ignored), end; entry != end;
        entry.increment(ignored)) {
     const std::string name = entry->path().filename().string();
-    if (!name.starts_with(start) || name.size() != start.size() + 16 + 5 || !name.ends_with(".json"))
-      continue;
-    StoredResult result{entry->path(), Json::parse(contentOf(entry->path()), nullptr, false)};
+    if (name.size() > kEnding && name.ends_with(".json") && name[name.size() - kEnding] == '.')
+      files[name.substr(0, name.size() - kEnding)].push_back(entry->path());
+  }
+  return files;
+}
+
+std::vector<StoredResult> resultsOf(const Job& job, const ResultFiles& files) {
+  std::vector<StoredResult> found;
+  const auto entry = files.find(job.name());
+  if (entry == files.end()) return found;
+  for (const fs::path& file : entry->second) {
+    StoredResult result{file, Json::parse(contentOf(file), nullptr, false)};
     const auto key = result.json.is_object() ? result.json.find("key") : result.json.end();
     if (!result.json.is_object() || key == result.json.end() || !key->is_string() ||
-        *key != name.substr(start.size(), 16) || !result.json.contains("job") ||
-        !result.json.contains("made_with"))
-      throw Error(ExitCode::BadInput, "`" + entry->path().string() + "` is no result of a benchmark",
+        *key != file.filename().string().substr(job.name().size() + 1, kKeyDigits) ||
+        !result.json.contains("job") || !result.json.contains("made_with"))
+      throw Error(ExitCode::BadInput, "`" + file.string() + "` is no result of a benchmark",
                   "remove it; its job will be run again");
     found.push_back(std::move(result));
   }
@@ -260,10 +271,10 @@ class Common {
 };
 
 // The result of the job that belongs to `common`, if there is one; otherwise `why` gives the reason.
-std::optional<StoredResult> resultOf(const BenchFolder& folder, const Job& job, const Common& common,
+std::optional<StoredResult> resultOf(const ResultFiles& files, const Job& job, const Common& common,
                                      std::string& why) {
   std::optional<StoredResult> found;
-  for (StoredResult& result : folder.results(job)) {
+  for (StoredResult& result : resultsOf(job, files)) {
     std::string other = firstDifference(result.json["job"], job.json());
     if (!other.empty()) other = fmt::format("`{}` was measured otherwise: {}", result.file.string(), other);
     if (other.empty()) other = common.difference(result);
@@ -286,11 +297,12 @@ std::vector<StoredResult> mergedResults(const BenchFolder& folder, const std::ve
                                         const std::function<void(const std::string&)>& leaveOut) {
   std::vector<std::optional<StoredResult>> found(jobs.size());
   Common common;
+  const ResultFiles files = folder.resultFiles();
   for (const bool choice : {true, false})
     for (size_t i = 0; i < jobs.size(); ++i) {
       if (chosen[i] != choice) continue;
       std::string why;
-      found[i] = resultOf(folder, jobs[i], common, why);
+      found[i] = resultOf(files, jobs[i], common, why);
       if (!why.empty() && choice)
         throw Error(
             ExitCode::BadInput, "results that cannot be compared: " + why,

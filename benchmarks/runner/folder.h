@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -27,6 +28,13 @@ struct StoredResult {
   nlohmann::ordered_json json;
 };
 
+// The files of results by the name of their job, as they were in the folder at one moment.
+using ResultFiles = std::map<std::string, std::vector<std::filesystem::path>>;
+
+// All results of the job among these, whatever their key; there is one unless something on which it depends has
+// changed. Throws Error(BadInput) on a file that is not a result.
+std::vector<StoredResult> resultsOf(const Job& job, const ResultFiles& files);
+
 class BenchFolder {
  public:
   // `cache`: folder of the references, which several benchmark folders may share; if empty, references/ in `folder`.
@@ -43,9 +51,7 @@ class BenchFolder {
   // Creates the subfolders and tries to write `bytes` of results and `referenceBytes` of references into them. Throws
   // Error(CannotWrite) naming the obstacle: permissions or too little space.
   void prepare(uint64_t bytes, uint64_t referenceBytes) const;
-  // All results of the job, whatever their key; there is one unless something on which it depends has changed. Throws
-  // Error(BadInput) on a file that is not a result.
-  std::vector<StoredResult> results(const Job& job) const;
+  ResultFiles resultFiles() const;
   void write(const Job& job, const std::string& key, const nlohmann::ordered_json& result) const;
 
   // Returns the reference `name` and calls `make` if it does not exist. If another process is making it, waits for as

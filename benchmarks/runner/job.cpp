@@ -2,13 +2,16 @@
 #include "framework/scene/scene.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <set>
 
 #include "benchmarks/runner/pass_code.h"
+#include "benchmarks/runner/settled.h"
 #include "fovea/scene.h"
 #include "framework/base/hash.h"
 #include "framework/base/paths.h"
@@ -30,6 +33,7 @@ constexpr const char* kLayers[] = {"radiance", "direct", "indirect", "half_a", "
 bool isLayer(const std::string& output) {
   return std::find(std::begin(kLayers), std::end(kLayers), output) != std::end(kLayers);
 }
+constexpr uint64_t kMostFurtherFrames = 8;
 constexpr int kMaxSearchSteps = 12;
 constexpr double kSearchTolerance = 0.04;  // relative, of the number searched for
 
@@ -65,6 +69,12 @@ std::string hashOf(std::string_view text) {
   Hasher hash;
   hash.add(text);
   return session::formatHash(hash.value());
+}
+
+// The name of this computer.
+std::string machine() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : std::string();
 }
 
 // null if it is not known.
@@ -218,15 +228,17 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
   progress_.stage("preparing " + job.graph);
   const auto run = makeRun(job, pictures);
   run->prepare();
-  session::Timings timings(run->plan());
+  session::Timings own(run->plan()), timings(run->plan());  // of the job's frames, and with further ones
   Sequence sequence;
   std::vector<graph::FrameResult> kept;  // converted afterwards, so that the wall time excludes it
-  uint64_t finished = 0;
+  std::vector<double> walls;             // of all frames that have finished
   const uint64_t total = uint64_t(job.warmup) + job.frames;
   const auto take = [&](graph::FrameResult result) {
-    progress_.frames(++finished, total);
-    if (finished <= job.warmup) return;
+    walls.push_back(result.wallMs);
+    progress_.frames(std::min<uint64_t>(walls.size(), total), total);
+    if (walls.size() <= job.warmup) return;
     timings.add(result);
+    if (walls.size() <= total) own.add(result);
     if (!result.outputs.empty()) kept.push_back(std::move(result));
   };
   progress_.frames(0, total);
@@ -241,6 +253,13 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
     }
   }
   while (auto result = run->executor().next()) take(std::move(*result));
+  // Frames after those of the job are rendered for their times alone.
+  for (uint64_t i = total; i < total + kMostFurtherFrames && !settled(walls, walls.size() - job.warmup);
+       ++i) {
+    throwIfInterrupted();
+    run->submit(run->frame(job.first - job.warmup + i), false);
+    while (auto result = run->executor().next()) take(std::move(*result));
+  }
   throwIfInterrupted();
   for (graph::FrameResult& result : kept) {
     sequence.frames.push_back(toFile(*run, result));
@@ -250,8 +269,10 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
   }
   session::RunInfo info;
   info.device = device_->name();
-  const Json all = Json::parse(timings.json(info));
-  sequence.time = {{"frame", all["frame"]}, {"passes", all["passes"]}, {"counters", all["counters"]}};
+  const Json times = Json::parse(timings.json(info));
+  sequence.time = {{"frame", times["frame"]},
+                   {"passes", times["passes"]},
+                   {"counters", Json::parse(own.json(info))["counters"]}};
   addSecondEye(sequence.time);
   progress_.clear();
   return sequence;
@@ -380,7 +401,8 @@ Json BenchRunner::measure(const Job& wanted, const Fingerprint& fingerprint) {
   Job job = wanted;
   Json result = {{"format", kBenchFormat},   {"key", fingerprint.key(wanted)},
                  {"job", wanted.json()},     {"made_with", fingerprint.parts},
-                 {"version", FOVEA_VERSION}, {"commit", kBuildCommit}};
+                 {"version", FOVEA_VERSION}, {"commit", kBuildCommit},
+                 {"machine", machine()}};
   if (job.match) result["match"] = search(job);
   const Sequence sequence = render(job);
   result["time"] = sequence.time;

@@ -41,13 +41,40 @@ std::vector<float> changeErrors(const image::Picture& now, const image::Picture&
   return errors;
 }
 
-Json regionOf(const image::Measures& m, const image::Measures* indirect, double directFloor) {
+// Errors of the indirect light as it was rendered, and after it was scaled so that its sum is that of the reference;
+// `light` is the ratio of these sums before.
+struct IndirectErrors {
+  image::PerRegion<image::Measures> asRendered, scaled;
+  double light = image::kUnknown;
+};
+
+image::PerRegion<image::Measures> measuresOf(const session::Compared& c) {
+  return image::compare(c.image, c.reference, c.halves, c.fovea, image::kDefaultPixelsPerDegree);
+}
+
+IndirectErrors indirectErrors(image::File picture, const image::File& truth,
+                              session::CompareOptions options) {
+  options.layer = kIndirect;
+  const session::Compared asRendered =
+      session::compareRadiance("picture", picture, "reference", truth, options);
+  IndirectErrors errors{measuresOf(asRendered), {}, lightOf(asRendered)};
+  if (!(errors.light > 0) || !std::isfinite(errors.light)) return errors;
+  for (image::Layer& layer : picture.layers)
+    if (layer.name == kIndirect)
+      for (float& value : layer.image.data) value = float(value / errors.light);
+  errors.scaled = measuresOf(session::compareRadiance("picture", picture, "reference", truth, options));
+  return errors;
+}
+
+Json regionOf(const image::Measures& m, const image::Measures* indirect, const image::Measures* scaled,
+              double directFloor) {
   return {{"mse", known(m.mse)},
           {"psnr", known(m.psnr)},
           {"flip", known(m.flip)},
           {"blocks", known(indirect ? indirect->blocks : m.blocks)},
           {"relmse", indirect ? known(indirect->relMse) : Json()},
           {"indirect_mse", indirect ? known(indirect->mse) : Json()},
+          {"scaled_indirect_mse", scaled ? known(scaled->mse) : Json()},
           {"noise_floor", known(m.noiseFloor)},
           {"direct_floor", known(directFloor)}};
 }
@@ -72,15 +99,9 @@ Json BenchRunner::errors(const Job& job, const image::File& last) {
   session::CompareOptions options;
   options.layer = job.layer;
   const session::Compared c = session::compareRadiance("picture", last, "reference", truth, options);
-  const auto whole = image::compare(c.image, c.reference, c.halves, c.fovea, image::kDefaultPixelsPerDegree);
-  std::optional<image::PerRegion<image::Measures>> indirect;
-  double indirectLight = image::kUnknown;
-  if (last.find(kIndirect)) {
-    options.layer = kIndirect;
-    const session::Compared i = session::compareRadiance("picture", last, "reference", truth, options);
-    indirect = image::compare(i.image, i.reference, i.halves, i.fovea, image::kDefaultPixelsPerDegree);
-    indirectLight = lightOf(i);
-  }
+  const image::PerRegion<image::Measures> whole = measuresOf(c);
+  std::optional<IndirectErrors> indirect;
+  if (last.find(kIndirect)) indirect = indirectErrors(last, truth, options);
   image::PerRegion<double> floor{image::kUnknown, image::kUnknown, image::kUnknown};
   if (c.perfectIndirect) floor = image::meanSquaredError(*c.perfectIndirect, c.reference, c.fovea);
   if (job.pictures) {
@@ -90,13 +111,16 @@ Json BenchRunner::errors(const Job& job, const image::File& last) {
     writePicture(job.name() + "-error",
                  image::errorPicture(image::pixelErrors(c.image, c.reference), width, kErrorScale, &c.fovea));
   }
-  return {
-      {"fovea", regionOf(whole.fovea, indirect ? &indirect->fovea : nullptr, floor.fovea)},
-      {"periphery", regionOf(whole.periphery, indirect ? &indirect->periphery : nullptr, floor.periphery)},
-      {"whole", regionOf(whole.whole, indirect ? &indirect->whole : nullptr, floor.whole)},
-      {"light", known(lightOf(c))},
-      {"indirect_light", known(indirectLight)},
-      {"disc", {c.fovea.x, c.fovea.y, c.fovea.radius}}};
+  const auto region = [&](auto of) {
+    return regionOf(of(whole), indirect ? &of(indirect->asRendered) : nullptr,
+                    indirect ? &of(indirect->scaled) : nullptr, of(floor));
+  };
+  return {{"fovea", region([](auto& r) -> auto& { return r.fovea; })},
+          {"periphery", region([](auto& r) -> auto& { return r.periphery; })},
+          {"whole", region([](auto& r) -> auto& { return r.whole; })},
+          {"light", known(lightOf(c))},
+          {"indirect_light", known(indirect ? indirect->light : image::kUnknown)},
+          {"disc", {c.fovea.x, c.fovea.y, c.fovea.radius}}};
 }
 
 Json BenchRunner::temporal(const Job& job, const Sequence& sequence) {
