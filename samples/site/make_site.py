@@ -121,7 +121,6 @@ class Site:
             text += self.render(name, "384x216", "foveal", "--scene", name, "--warmup", "8", "--frames", "1")
         return text
 
-
     def notebooks_page(self):
         text = "# Every notebook\n\nThese are the samples for Python, cell by cell, with what they print and write.\n\n"
         for sample in sorted((TOP / "samples/python").glob("*.py")):
@@ -129,7 +128,7 @@ class Site:
         return text
 
     def run(self, sample):
-        """What a sample prints, and the pictures that it writes. Without a package that it needs, it is left out."""
+        """What a sample prints, and the pictures that it writes; or which package it lacks."""
         if not self.pictures:
             return ""
         print("running", sample.name, flush=True)
@@ -141,7 +140,7 @@ class Site:
             if not last.startswith("ModuleNotFoundError"):
                 raise SystemExit(run.stderr)
             print(f"{sample.name}: {last}", file=sys.stderr)
-            return ""
+            return f"It was not run: {last.partition(': ')[2]}.\n\n"
         shown = "".join(f"![{file.name}](pictures/{sample.stem}/{file.name})\n\n" for file in sorted(folder.iterdir()))
         return f"```text\n{run.stdout}```\n\n{shown}"
 
