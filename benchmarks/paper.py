@@ -15,7 +15,8 @@ from page.text import anchor, one_or_many  # noqa: E402
 from page.verdict import FAILS, HOLDS, MISSING, UNDECIDED  # noqa: E402
 
 HEADINGS = {FAILS: "Do not hold in every scene", HOLDS: "Hold in every scene",
-            UNDECIDED: "Undecided, as seeds differ too much", MISSING: "Not measured yet"}
+            UNDECIDED: "Left open by the measurements, as seeds differ too much or a search ended at a bound",
+            MISSING: "Not measured yet"}
 
 
 def entries(results, folder):
@@ -33,7 +34,7 @@ def summary(found):
               for verdict in HEADINGS}
     count = {verdict: len(list_) for verdict, list_ in claims.items()}
     lines = [f"Of {sum(count.values())} claims, **{count[FAILS]} do not hold in every scene, {count[HOLDS]} hold in "
-             f"all**, {count[UNDECIDED]} are undecided and {count[MISSING]} not measured yet. They are those of the "
+             f"all**; {count[UNDECIDED]} undecided, {count[MISSING]} not measured yet. They are those of the "
              "paper's tables and text, what its figures are there to show and, last, what it leaves open."]
     for verdict, heading in HEADINGS.items():
         if claims[verdict]:

@@ -79,7 +79,7 @@ def claim(text, outcomes, detail="", reason=""):
     if kinds[False]:
         parts.append(f"it does not in {listed(kinds[False])}")
     if kinds[None]:
-        parts.append(f"seeds differ too much to tell in {listed(kinds[None])}")
+        parts.append(f"the measurements leave it open in {listed(kinds[None])}")
     verdict = FAILS if kinds[False] else UNDECIDED if kinds[None] else HOLDS
     head = {FAILS: "**Does not hold here**", UNDECIDED: "**Undecided**", HOLDS: "**Holds here**"}[verdict]
     sentence = f"{text}. {head}: {'; '.join(parts)}{f' ({detail})' if detail else ''}."

@@ -83,8 +83,8 @@ class PaperPageDecisions(unittest.TestCase):
         self.assertEqual((made.verdict, made.sentence), (HOLDS, "It is so. **Holds here**: it holds in `a` and `b`."))
         made = claim("It is so", {"a": True, "b": False, "c": None}, "1 and 2", lambda scene: f"Why in {scene}.")
         self.assertEqual(made.verdict, FAILS)
-        self.assertEqual(made.sentence, "It is so. **Does not hold here**: it holds in `a`; it does not in `b`; seeds "
-                                        "differ too much to tell in `c` (1 and 2). Why in b.")
+        self.assertEqual(made.sentence, "It is so. **Does not hold here**: it holds in `a`; it does not in `b`; the "
+                                        "measurements leave it open in `c` (1 and 2). Why in b.")
         self.assertEqual(claim("It is so", {"a": True, "c": None}).verdict, UNDECIDED)
         self.assertEqual(claim("It is so", {}).verdict, MISSING)
 
