@@ -28,7 +28,7 @@ LARGE_TEXELS(vec4, radiance);
 #endif
 #if TRACED
 #include "vpls/eye_paths.glsl"
-uniform samplerBuffer tracedEnds;
+LARGE_TEXELS(vec4, tracedEnds);
 #endif
 #if EMITTED
 uniform samplerBuffer emitted;
@@ -126,8 +126,8 @@ void main() {
   uint stream = randomStream(seed, streamFrame, kCandidateStream, i);
 #if TRACED
   if (i % 4u == 3u) {
-    uint paths = uint(textureSize(tracedEnds)) / 3u;
-    EyePathEnd end = loadEyePathEnd(tracedEnds, randomStream(seed, streamFrame, kPathStream, i) % paths);
+    uint paths = uint(texelsIn(tracedEnds)) / 3u, path = randomStream(seed, streamFrame, kPathStream, i) % paths;
+    EyePathEnd end = loadEyePathEnd(tracedEnds, path);
     uint side = end.kind > 0.0 ? sideAt(end.position, end.normal) : kNoSide;
     if (side != kNoSide) {
       candidate = candidateOn(side, end.position);

@@ -21,7 +21,7 @@ layout(std430) buffer CountersBlock { uint alive; } counters;
 layout(std430) readonly buffer GainsBlock { float list[]; } gains;
 #endif
 #if TRACED
-uniform samplerBuffer tracedEnds;
+LARGE_TEXELS(vec4, tracedEnds);
 uniform samplerBuffer densities;
 layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
 

@@ -26,7 +26,7 @@ layout(local_size_x = 64) in;
 
 uniform samplerBuffer sites;
 #if TRACED
-uniform samplerBuffer tracedEnds;
+LARGE_TEXELS(vec4, tracedEnds);
 #else
 uniform samplerBuffer ends;
 #endif

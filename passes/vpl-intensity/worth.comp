@@ -14,7 +14,7 @@ layout(local_size_x = 64) in;
 uniform usamplerBuffer vpls;
 uniform samplerBuffer densities;
 #if TRACED
-uniform samplerBuffer tracedEnds;
+LARGE_TEXELS(vec4, tracedEnds);
 #endif
 layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
 layout(std430) readonly buffer SitesBlock { VplSite list[]; } sites;
