@@ -374,11 +374,11 @@ FoveaError foveaError(const std::vector<float>& a, const std::vector<float>& ref
 
 // Errors in the fovea after a camera has arrived by a walk of some frames, over five walks. The reference is traced
 // paths, with their noise subtracted. Every pixel takes all VPLs, because with interleaving over 64 x 64 pixels the
-// filter across edges alone makes a relMSE of 0.05. The clamp at 1.5 m is most of the error and nearly the same every
-// time. Both errors of `ours` are below those of `ir_1000`, as in the paper. With the disc kernel (the ablation)
-// light paths do better, because they lie where the light is and the Cornell box has no hidden rooms to waste them
-// in. Reuse by importance and reuse at random cannot be told apart in five walks, because the weighting compensates
-// for how either has chosen.
+// filter across edges alone makes a relMSE of 0.05. The errors of `ours` and `ours_r` are below those of `ir_1000`, as in
+// the paper. That of `ours` differs little between the kernels, as the light that the clamp takes is returned. With the
+// disc kernel (the ablation) light paths do better, because they lie where the light is and the Cornell box has no
+// hidden rooms to waste them in. In walks so short, reuse at random has less error than reuse by importance, which the
+// paper does not say; over longer times its VPLs gather on few surfaces (passes/vpls.md, manage).
 TEST(LongFoveated, FovealErrorByMethod) {
   const scene::Scene s = scene::builtin("cornellbox");
   const glm::vec2 gaze = gazeOf(s);
@@ -433,8 +433,8 @@ TEST(LongFoveated, FovealErrorByMethod) {
           graph.c_str(), kernel.c_str(), m.relative, m.display, std::sqrt(spread / walks));
     }
   EXPECT_LT(mean["ours clamp"].display, mean["ir_1000 clamp"].display);
-  EXPECT_LT(mean["ours clamp"].display, 1.1 * mean["ours_r clamp"].display);
-  EXPECT_LT(mean["ours disc"].display, mean["ours clamp"].display);
+  EXPECT_LT(mean["ours_r clamp"].display, mean["ir_1000 clamp"].display);
+  EXPECT_NEAR(mean["ours disc"].display, mean["ours clamp"].display, 0.25 * mean["ours clamp"].display);
 }
 
 // A graph file in the test's folder that changes `foveal`.
