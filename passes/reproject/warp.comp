@@ -5,11 +5,10 @@
 // tiles that contain such pixels are listed for fill.comp. Defines: NEAR_FIELD 0/1, whether the light from nearby
 // surfaces, a part of the irradiance, is also warped on its own.
 #include "screen/same_surface.glsl"
+#include "screen/taps.glsl"
 #include "scene/scene.glsl"
 #include "reproject/records.h"
 #include "screen/gbuffer.glsl"
-
-const float kSameRow = 1e-3;  // texels
 
 layout(local_size_x = kRowWidth) in;
 
@@ -42,33 +41,24 @@ layout(push_constant) uniform Constants {
 // the same for the light from nearby surfaces.
 vec4 fromSource(vec4 position, vec3 normal, vec3 face, out vec3 near) {
   near = vec3(0.0);
-  vec4 clip = sourceWorldToClip * vec4(position.xyz, 1.0);
-  if (clip.w <= 0.0) return vec4(0.0);
   ivec2 size = imageSize(sourceGbufferDistance);
-  vec2 at = (0.5 * clip.xy / clip.w + 0.5) * vec2(size) - 0.5;  // texel centres at whole numbers
-  if (any(lessThanEqual(at, vec2(-1.0))) || any(greaterThanEqual(at, vec2(size)))) return vec4(0.0);
-  // Eyes side by side see a point in the same row, up to rounding, in which case two texels are enough.
-  bool sameRow = abs(at.y - round(at.y)) < kSameRow;
-  at.y = sameRow ? round(at.y) : at.y;
-  int texels = sameRow ? 2 : 4;
-  ivec2 first = ivec2(floor(at));
-  vec2 f = at - floor(at);
+  Taps taps = tapsAround(sourceWorldToClip, position.xyz, size);
   float tolerance = planeTolerance * position.w;
   vec4 sum = vec4(0.0);
   vec3 origin = vec3(0.0);
   bool found = false;
-  for (int i = 0; i < texels; ++i) {
-    ivec2 d = ivec2(i & 1, i >> 1), q = first + d, inside = clamp(q, ivec2(0), size - 1);
+  for (int i = 0; i < taps.count; ++i) {
+    ivec2 q = tapPixel(taps, i), inside = clamp(q, ivec2(0), size - 1);
     bool same = q == inside && sameSurface(position.xyz, face, normal, sourceAt(inside),
                                            imageLoad(sourceGbufferNormal, inside).xyz, tolerance, leastCos);
     if (!same) continue;
     vec3 value = imageLoad(sourceIrradiance, inside).rgb;
     if (!found) origin = value;
     found = true;
-    vec2 w = mix(1.0 - f, f, vec2(d));
-    sum += w.x * w.y * vec4(value - origin, 1.0);
+    float w = tapWeight(taps, i);
+    sum += w * vec4(value - origin, 1.0);
 #if NEAR_FIELD
-    near += w.x * w.y * imageLoad(sourceNearField, inside).rgb;
+    near += w * imageLoad(sourceNearField, inside).rgb;
 #endif
   }
   near /= max(sum.a, 1e-12);

@@ -107,7 +107,7 @@ class Site:
         text = "# Every graph\n\nThe pictures show the scene `cornellbox_moving` after 4 frames.\n\n"
         for graph in self.ask("graphs", "--json"):
             name = graph["name"]
-            short = ["--set", "spp=256", "--frames", "1"] if name == "reference" else ["--warmup", "4", "--frames", "1"]
+            short = ["--set", "spp=256", "--frames", "1"] if name in ("reference", "alternatives/reference_stereo") else ["--warmup", "4", "--frames", "1"]
             text += f"## {name}\n\n{graph['description']}.\n\n"
             text += self.render(name, "256x256", name, "--scene", "cornellbox_moving", *short)
             text += f"`fovea describe {name}` tells its parameters, passes and memory.\n\n"

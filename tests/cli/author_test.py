@@ -117,7 +117,7 @@ class AuthorValues(CliTest):
 
     def tries(self, command, graph, values):
         arguments = ["--scene", "cornellbox", "--quiet", "-o", "a.exr"] if command == "render" else []
-        if graph == "reference" and not any(value.startswith("spp=") for value in values):
+        if graph in ("reference", "alternatives/reference_stereo") and not any(value.startswith("spp=") for value in values):
             arguments += ["--set", "spp=2"]
         return self.call(command, graph, "--size", "16x16", *arguments, *(w for v in values for w in ("--set", v)))
 

@@ -31,7 +31,7 @@ NEVER = ["vkAllocateDescriptorSets", "vkAllocateMemory", "vkCreateComputePipelin
 # Without those whose work is done on the host.
 GRAPHS = sorted({path.relative_to(SOURCE / "graphs").with_suffix("").as_posix()
                  for folder in (".", "alternatives", "debug") for path in (SOURCE / "graphs" / folder).glob("*.json")}
-                - {"fovea-graph.schema", "reference", "alternatives/pt_denoised"})
+                - {"fovea-graph.schema", "reference", "alternatives/pt_denoised", "alternatives/reference_stereo"})
 
 
 @unittest.skipUnless(DRIVER.exists(), "there is no mock driver of Vulkan (libVkICD_mock_icd.so of chromium-common)")

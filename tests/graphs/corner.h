@@ -81,9 +81,10 @@ inline GraphRun renderCorner(const std::string& name, const scene::Scene& s) {
   options.frames = 3;
   options.set = {"vpl_count=100", "map_size=32", "shadow_map_size=128", "voxels=32", "spp=8"};
   std::erase_if(options.set, [&](const std::string& set) {
-    const bool vpls = name != "direct" && name != "reference" && !name.starts_with("alternatives/");
-    if (set.starts_with("spp")) return name != "reference";
-    if (set.starts_with("shadow")) return name == "reference";
+    const bool traced = name == "reference" || name == "alternatives/reference_stereo",
+               vpls = name != "direct" && !traced && !name.starts_with("alternatives/");
+    if (set.starts_with("spp")) return !traced;
+    if (set.starts_with("shadow")) return traced;
     if (set.starts_with("voxels")) return name.starts_with("ir_") || (!vpls && name != "alternatives/vxgi");
     return !vpls;
   });
