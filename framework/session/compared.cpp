@@ -15,7 +15,8 @@
 namespace fovea::session {
 namespace {
 
-constexpr const char* kRadiance = "radiance";
+constexpr const char *kRadiance = "radiance", *kCorrespondence = "correspondence";
+constexpr const char* kRight = "_right";  // suffix of the layers of the right eye
 
 [[noreturn]] void bad(const std::string& message, const std::string& remedy) {
   throw Error(ExitCode::BadInput, message, remedy);
@@ -266,19 +267,22 @@ image::Picture toPicture(const Source& source, const image::Image& image, float 
 }
 
 // `half_a` and `half_b` are halves of `radiance`. Minus `direct` they are halves of `indirect` with all the noise of
-// the former, since in scenes without emissive surfaces and sky direct light has none.
+// the former, since in scenes without emissive surfaces and sky direct light has none. Layers of the right eye have
+// halves of their own.
 std::optional<image::Halves> halvesInside(const Source& reference, const std::string& layer,
                                           const image::Window& window, float exposure) {
-  const image::Layer *a = reference.file.findLayer("half_a"), *b = reference.file.findLayer("half_b");
+  const std::string eye = layer.ends_with(kRight) ? kRight : "";
+  const image::Layer *a = reference.file.findLayer("half_a" + eye),
+                     *b = reference.file.findLayer("half_b" + eye);
   if (!a && !b) return {};
   if (!a || !b)
-    bad(fmt::format("`{}` has only one of the layers `half_a` and `half_b`", reference.name),
+    bad(fmt::format("`{0}` has only one of the layers `half_a{1}` and `half_b{1}`", reference.name, eye),
         "render it again");
   const image::Image first = cut(reference, *a, window), second = cut(reference, *b, window);
-  if (layer == kRadiance)
+  if (layer == kRadiance + eye)
     return image::Halves{image::fromRadiance(first, exposure), image::fromRadiance(second, exposure)};
-  const image::Layer* direct = reference.file.findLayer("direct");
-  if (layer != "indirect" || !direct) return {};
+  const image::Layer* direct = reference.file.findLayer("direct" + eye);
+  if (layer != "indirect" + eye || !direct) return {};
   const image::Image known = cut(reference, *direct, window);
   return image::Halves{image::fromRadiance(combined(first, known, -1), exposure),
                        image::fromRadiance(combined(second, known, -1), exposure)};
@@ -316,15 +320,14 @@ std::optional<image::Picture> perfectIndirect(const Source& image, const Source&
       exposure);
 }
 
-Compared prepared(const Source& image, const Source& reference, const std::vector<std::string>& halves,
-                  const CompareOptions& options) {
+Compared preparedLayer(const Source& image, const Source& reference, const std::vector<std::string>& halves,
+                       const CompareOptions& options) {
   Compared compared;
   std::string layer;
   const image::Layer& shown = layerOf(image, options, compared.layer);
   const image::Layer& wanted = layerOf(reference, options, layer);
   const image::Window window = overlap(shown, image.name, wanted, reference.name);
   const image::Image own = cut(image, shown, window), exact = cut(reference, wanted, window);
-  warnAboutScenes(image, reference);
   warnAboutLayers(image, shown, reference, wanted);
   warnAboutGrey(image, own, reference, exact);
   compared.exposure = exposureOf(image, reference, options);
@@ -338,6 +341,56 @@ Compared prepared(const Source& image, const Source& reference, const std::vecto
   return compared;
 }
 
+Compared prepared(const Source& image, const Source& reference, const std::vector<std::string>& halves,
+                  const CompareOptions& options) {
+  warnAboutScenes(image, reference);
+  return preparedLayer(image, reference, halves, options);
+}
+
+// ---- Both eyes ----
+
+void checkEyes(const Source& source, const std::string& layer, const std::string& graph) {
+  std::vector<std::string> names = layerNames(source);
+  std::erase(names, "");
+  for (const std::string& eye : {layer, layer + kRight})
+    if (!source.file.findLayer(eye))
+      bad(fmt::format("`{}` has no layer `{}` and cannot be compared with --eyes; it has {}", source.name,
+                      eye, names.empty() ? "one picture alone" : quoteList(names)),
+          fmt::format("render {} to an .exr file", graph));
+}
+
+ComparedEyes preparedEyes(const Source& image, const Source& reference, CompareOptions options) {
+  if (options.layer.empty()) options.layer = kRadiance;
+  checkEyes(image, options.layer, "a graph for two eyes such as `stereo`");
+  checkEyes(reference, options.layer, "the graph `alternatives/reference_stereo`");
+  const Source& where = image.file.findLayer(kCorrespondence) ? image : reference;
+  const image::Layer* places = where.file.findLayer(kCorrespondence);
+  if (!places)
+    bad(fmt::format(
+            "neither `{}` nor `{}` has the layer `{}`, which says where the right eye sees what the left "
+            "one does",
+            image.name, reference.name, kCorrespondence),
+        "take a reference from the graph `alternatives/reference_stereo`");
+  ComparedEyes eyes{prepared(image, reference, {}, options), {}, {}};
+  options.layer += kRight;
+  eyes.right = preparedLayer(image, reference, {}, options);
+  const image::Window whole = eyes.left.display, window = common(eyes.left.window, eyes.right.window);
+  if (window != whole)
+    bad(fmt::format("`{}` and `{}` have only the pixels {} of a picture of {} in common", image.name,
+                    reference.name, windowText(window), windowText(whole)),
+        "compare eyes by whole pictures");
+  if (dataOf(*places) != whole || displayOf(*places) != whole)
+    bad(fmt::format("`{}` and its layer `{}` differ in size: {} and {}", where.name, kCorrespondence,
+                    windowText(whole), windowText(dataOf(*places))),
+        "render it again");
+  eyes.correspondence = cut(where, *places, whole);
+  return eyes;
+}
+
+image::EyePictures picturesOf(const Compared& eye) {
+  return {&eye.image, &eye.reference, eye.halves ? &*eye.halves : nullptr};
+}
+
 }  // namespace
 
 Compared loadCompared(const std::string& imageName, const std::string& referenceName,
@@ -349,6 +402,21 @@ Compared compareRadiance(const std::string& imageName, image::File image, const 
                          image::File reference, const CompareOptions& options) {
   image.radiance = reference.radiance = true;
   return prepared({imageName, std::move(image)}, {referenceName, std::move(reference)}, {}, options);
+}
+
+void ComparedEyes::addTo(image::EyesComparison& comparison) const {
+  comparison.add(picturesOf(left), picturesOf(right), correspondence, left.exposure, left.fovea);
+}
+
+ComparedEyes loadComparedEyes(const std::string& imageName, const std::string& referenceName,
+                              const CompareOptions& options) {
+  return preparedEyes(open(imageName), open(referenceName), options);
+}
+
+ComparedEyes compareEyes(const std::string& imageName, image::File image, const std::string& referenceName,
+                         image::File reference, const CompareOptions& options) {
+  image.radiance = reference.radiance = true;
+  return preparedEyes({imageName, std::move(image)}, {referenceName, std::move(reference)}, options);
 }
 
 nlohmann::ordered_json describe(const Compared& c) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/image/eyes.h"
 #include "framework/image/metrics.h"
 
 namespace fovea::session {
@@ -44,6 +45,22 @@ Compared loadCompared(const std::string& image, const std::string& reference,
 
 // The same for pictures in memory, all of whose layers hold radiance; the names appear in messages.
 Compared compareRadiance(const std::string& imageName, image::File image, const std::string& referenceName,
+                         image::File reference, const CompareOptions& options);
+
+// Both eyes of a stereo picture. `left` also tells how the files were read.
+struct ComparedEyes {
+  Compared left, right;
+  image::Image correspondence;  // see image::EyesComparison
+  void addTo(image::EyesComparison& comparison) const;
+};
+
+// The layer of the options (or `radiance`) is that of the left eye; that of the right one has the suffix `_right`, and
+// so have its halves in the reference. The layer `correspondence` comes from the picture, or else from the reference.
+// Throws as loadCompared() does, and Error(BadInput) if one of these layers is missing or a file holds only a part of
+// its picture.
+ComparedEyes loadComparedEyes(const std::string& image, const std::string& reference,
+                              const CompareOptions& options);
+ComparedEyes compareEyes(const std::string& imageName, image::File image, const std::string& referenceName,
                          image::File reference, const CompareOptions& options);
 
 // Describes how the pictures were compared and gives the measures, for both commands; a measure that is not

@@ -9,6 +9,7 @@
 #include "framework/session/compared.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
+#include "samples/fovea/compare_eyes.h"
 
 namespace fovea::cli {
 namespace {
@@ -20,6 +21,7 @@ struct Options {
   std::string image, reference, errorImage;
   std::vector<std::string> halves;
   double pixelsPerDegree = image::kDefaultPixelsPerDegree, errorScale = 0.1;
+  bool eyes = false;
 };
 
 struct Row {
@@ -60,23 +62,48 @@ void print(const Options& options, const Compared& compared, const Row (&rows)[3
         "\nNo halves of this reference (layers half_a, half_b): its noise is not known, nor subtracted.\n");
 }
 
+void writeErrors(const Options& options, const std::vector<float>& errors, const Compared& compared) {
+  if (!options.errorImage.empty())
+    image::write(options.errorImage, {{"", image::errorPicture(errors, compared.image.display.width,
+                                                               options.errorScale, &compared.fovea)}});
+}
+
+ExitCode compareEyes(const Options& options) {
+  const ComparedEyes eyes = loadComparedEyes(options.image, options.reference, options.common);
+  if (!options.errorImage.empty()) checkOutputs({options.errorImage});
+  image::EyesComparison comparison;
+  eyes.addTo(comparison);
+  writeErrors(options, comparison.pixelExcess(), eyes.left);
+  Json head;
+  if (options.common.json) {
+    head = {{"image", options.image}, {"reference", options.reference}};
+    head.update(describe(eyes.left));
+  }
+  printEyes(
+      comparison, head,
+      fmt::format("eyes of {} against {}: {}", options.image, options.reference, describeInWords(eyes.left)));
+  return ExitCode::Ok;
+}
+
 ExitCode compare(const Options& options) {
-  if (!options.errorImage.empty()) image::checkWritable(options.errorImage);
   const Compared c = loadCompared(options.image, options.reference, options.halves, options.common);
   if (!options.errorImage.empty()) checkOutputs({options.errorImage});
   const auto measures = image::compare(c.image, c.reference, c.halves, c.fovea, options.pixelsPerDegree);
   image::PerRegion<double> floor{image::kUnknown, image::kUnknown, image::kUnknown};
   if (c.perfectIndirect) floor = image::meanSquaredError(*c.perfectIndirect, c.reference, c.fovea);
-  if (!options.errorImage.empty())
-    image::write(options.errorImage,
-                 {{"", image::errorPicture(image::pixelErrors(c.image, c.reference), c.image.display.width,
-                                           options.errorScale, &c.fovea)}});
+  if (!options.errorImage.empty()) writeErrors(options, image::pixelErrors(c.image, c.reference), c);
   print(options, c,
         {{"fovea", measures.fovea, floor.fovea},
          {"periphery", measures.periphery, floor.periphery},
          {"whole", measures.whole, floor.whole}});
-  if (!options.errorImage.empty() && !options.common.json) fmt::print("wrote {}\n", options.errorImage);
   return ExitCode::Ok;
+}
+
+ExitCode run(const Options& options) {
+  if (!options.errorImage.empty()) image::checkWritable(options.errorImage);
+  const ExitCode code = options.eyes ? compareEyes(options) : compare(options);
+  if (!options.errorImage.empty() && !options.common.json) fmt::print("wrote {}\n", options.errorImage);
+  return code;
 }
 
 }  // namespace
@@ -90,12 +117,14 @@ void addCompare(CLI::App& program, Action& action) {
       ->type_name("");
   command->add_option("REFERENCE", options->reference, "What it should look like")->required()->type_name("");
   addCompareOptions(*command, options->common);
+  CLI::Option* eyes = addEyesFlag(*command, options->eyes);
   command
       ->add_option(
           "--halves", options->halves,
           "Two independent halves of the reference, for its noise; default: its layers\nhalf_a and half_b")
       ->type_name("A B")
-      ->expected(2);
+      ->expected(2)
+      ->excludes(eyes);
   command
       ->add_option("--error-image", options->errorImage,
                    "Write where the errors are (root of the mean square over RGB), with the fovea")
@@ -109,8 +138,9 @@ void addCompare(CLI::App& program, Action& action) {
       ->add_option("--ppd", options->pixelsPerDegree,
                    "Pixels per degree of visual angle, for FLIP; default 67")
       ->type_name("P")
-      ->check(numberBetween(1, 1000));
-  command->callback([options, &action] { action = [options] { return compare(*options); }; });
+      ->check(numberBetween(1, 1000))
+      ->excludes(eyes);
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 
 }  // namespace fovea::cli

@@ -11,6 +11,7 @@
 #include "framework/session/progress.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
+#include "samples/fovea/compare_eyes.h"
 
 namespace fovea::cli {
 namespace {
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 struct SequenceOptions {
   CompareOptions common;
   std::string sequence, reference;
+  bool eyes = false;
 };
 
 using Frames = std::map<uint64_t, std::string>;  // number in the name -> file
@@ -125,22 +127,31 @@ Json toJson(const image::SequenceMeasures& m) {
           {"excess_noise_floor", m.excessNoiseFloor}};
 }
 
+Json headOf(const SequenceOptions& options, const Frames& frames, const Compared& last) {
+  Json json = {{"sequence", options.sequence}, {"reference", options.reference}};
+  json.update(describe(last));
+  json.erase("gaze");  // the gaze moves
+  json["frames"] = frames.size();
+  json["first_frame"] = frames.begin()->first;
+  return json;
+}
+
+std::string titleOf(const SequenceOptions& options, const Frames& frames, const Compared& last) {
+  return fmt::format("{} against {}: frames {} to {}, {}", options.sequence, options.reference,
+                     frames.begin()->first, frames.rbegin()->first, describeInWords(last));
+}
+
 void print(const SequenceOptions& options, const Frames& frames, const Compared& last,
            const image::PerRegion<image::SequenceMeasures>& result) {
   const std::pair<const char*, const image::SequenceMeasures&> rows[] = {
       {"fovea", result.fovea}, {"periphery", result.periphery}, {"whole", result.whole}};
   if (options.common.json) {
-    Json json = {{"sequence", options.sequence}, {"reference", options.reference}};
-    json.update(describe(last));
-    json.erase("gaze");  // the gaze moves
-    json["frames"] = frames.size();
-    json["first_frame"] = frames.begin()->first;
+    Json json = headOf(options, frames, last);
     for (const auto& [name, measures] : rows) json[name] = toJson(measures);
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     return;
   }
-  fmt::print("{} against {}: frames {} to {}, {}\n\n", options.sequence, options.reference,
-             frames.begin()->first, frames.rbegin()->first, describeInWords(last));
+  fmt::print("{}\n\n", titleOf(options, frames, last));
   constexpr const char* kLine = "{:<10} {:>6} {:>11} {:>11} {:>16} {:>11} {:>14}\n";
   fmt::print(kLine, "", "pairs", "MSE", "MSE'", "reference's MSE'", "excess", "its noise");
   for (const auto& [name, m] : rows)
@@ -151,28 +162,63 @@ void print(const SequenceOptions& options, const Frames& frames, const Compared&
         "\nNo halves of this reference (layers half_a, half_b): its noise is not known, nor subtracted.\n");
 }
 
+// Loads the frames one by one, and hands each to `add` after it was found to be like the one before. load(file, its
+// reference): a frame; readingOf(frame): how its files were read. Returns the last frame.
+template <class Load, class ReadingOf, class Add>
+auto eachFrame(const SequenceOptions& options, const Frames& frames, const Frames& references, Load load,
+               ReadingOf readingOf, Add add) {
+  Progress progress(options.common.json, 0);
+  decltype(load(std::string(), std::string())) last;
+  uint64_t count = 0;
+  for (const auto& [number, file] : frames) {
+    progress.frames(count, frames.size());
+    auto frame = load(file, references.at(number));
+    const Compared &now = readingOf(frame), &before = readingOf(last);
+    if (count > 0 && now.exposure != before.exposure)
+      bad(fmt::format("the exposure changes from {} to {} at `{}`", before.exposure, now.exposure, file),
+          "changes compare only at one exposure: give --exposure");
+    if (count > 0 && (now.window != before.window || now.layer != before.layer))
+      bad(fmt::format("from `{}` on, the frames show another layer or other pixels", file),
+          "render all of them alike");
+    add(frame);
+    last = std::move(frame);
+    ++count;
+  }
+  progress.clear();
+  return last;
+}
+
+void compareEyes(const SequenceOptions& options, const Frames& frames, const Frames& references) {
+  image::EyesComparison comparison;
+  const ComparedEyes last = eachFrame(
+      options, frames, references,
+      [&](const std::string& image, const std::string& reference) {
+        return loadComparedEyes(image, reference, options.common);
+      },
+      [](const ComparedEyes& eyes) -> const Compared& { return eyes.left; },
+      [&](const ComparedEyes& eyes) { eyes.addTo(comparison); });
+  printEyes(comparison, options.common.json ? headOf(options, frames, last.left) : Json(),
+            "eyes of " + titleOf(options, frames, last.left));
+}
+
+void comparePictures(const SequenceOptions& options, const Frames& frames, const Frames& references) {
+  image::SequenceComparison comparison;
+  const Compared last = eachFrame(
+      options, frames, references,
+      [&](const std::string& image, const std::string& reference) {
+        return loadCompared(image, reference, {}, options.common);
+      },
+      [](const Compared& compared) -> const Compared& { return compared; },
+      [&](Compared& now) {
+        comparison.add(std::move(now.image), std::move(now.reference), std::move(now.halves), now.fovea);
+      });
+  print(options, frames, last, comparison.result());
+}
+
 ExitCode compareSequence(const SequenceOptions& options) {
   const Frames frames = findFrames(options.sequence), references = findFrames(options.reference);
   checkSameFrames(options, frames, references);
-  Progress progress(options.common.json, 0);
-  image::SequenceComparison comparison;
-  Compared last;
-  std::string layer;
-  for (const auto& [number, file] : frames) {
-    progress.frames(comparison.frames(), frames.size());
-    Compared now = loadCompared(file, references.at(number), {}, options.common);
-    if (comparison.frames() > 0 && now.exposure != last.exposure)
-      bad(fmt::format("the exposure changes from {} to {} at `{}`", last.exposure, now.exposure, file),
-          "changes compare only at one exposure: give --exposure");
-    if (comparison.frames() > 0 && (now.window != last.window || now.layer != last.layer))
-      bad(fmt::format("from `{}` on, the frames show another layer or other pixels", file),
-          "render all of them alike");
-    comparison.add(std::move(now.image), std::move(now.reference), std::move(now.halves), now.fovea);
-    last = std::move(now);
-  }
-  progress.clear();
-  const auto result = comparison.result();
-  print(options, frames, last, result);
+  options.eyes ? compareEyes(options, frames, references) : comparePictures(options, frames, references);
   return ExitCode::Ok;
 }
 
@@ -192,6 +238,7 @@ void addCompareSequence(CLI::App& program, Action& action) {
       ->required()
       ->type_name("");
   addCompareOptions(*command, options->common);
+  addEyesFlag(*command, options->eyes);
   command->callback([options, &action] { action = [options] { return compareSequence(*options); }; });
 }
 

@@ -306,5 +306,128 @@ class CompareSequence(CompareTest):
         self.fails(BAD_INPUT, "compare-sequence", "one", "one", says=["two frames"])
 
 
+class CompareEyes(CompareTest):
+    WINDOW = (0, 0, 16, 8)
+
+    def eyes(self, name, left, right, window=WINDOW, display=None, places=None, **layers):
+        """Writes a picture of both eyes. `places` gives x, y and the pixels of the correspondence."""
+        pixels = {"radiance": lambda x, y: (left,) * 3, "radiance_right": lambda x, y: (right,) * 3}
+        pixels.update({layer: lambda x, y, v=value: (v,) * 3 for layer, value in layers.items()})
+        if places:
+            pixels["correspondence"] = places
+        channels = {f"{layer}.{c}": lambda x, y, f=f, i=i: f(x, y)[i]
+                    for layer, f in pixels.items() for i, c in enumerate("RGB")}
+        (self.folder / name).parent.mkdir(exist_ok=True)
+        exr.write(self.folder / name, exr.Part(channels, window, display))
+        return name
+
+    @staticmethod
+    def straight(x, y):
+        """Both eyes are at one place, and the right one does not see the column on the left."""
+        return (x + 0.5, y + 0.5, 1) if x > 0 else (0, 0, 0)
+
+    def test_numbers(self):
+        self.eyes("a.exr", 0.25, 0.5)
+        self.eyes("g.exr", 0.25, 0.3, places=self.straight)
+        m = self.json("compare", "--eyes", "a.exr", "g.exr", "--exposure", "2", "--radius", "0.125")
+        self.assertEqual((m["layer"], m["exposure"], m["size"]), ("radiance", 2, [16, 8]))
+        d, wanted = srgb(0.5) - srgb(1), srgb(0.5) - srgb(0.6)
+        for region in ("fovea", "periphery", "whole"):
+            r = m[region]
+            self.assertAlmostEqual(r["difference"], d ** 2, delta=1e-6)
+            self.assertAlmostEqual(r["reference_difference"], wanted ** 2, delta=1e-6)
+            self.assertAlmostEqual(r["excess"], (d - wanted) ** 2, delta=1e-6)
+            self.assertIsNone(r["noise_floor"])
+            self.assertNotIn("flicker", r)
+        self.assertEqual((m["whole"]["pixels"], m["whole"]["share"], m["fovea"]["share"]), (120, 15 / 16, 1))
+        run = self.succeeds("compare", "--eyes", "a.exr", "g.exr", "--error-image", "error.png")
+        self.assertRegex(run.stdout, r"(?m)^whole +120 +0.9375 ")
+        self.assertIn("half_b_right", run.stdout)
+        self.assertTrue((self.folder / "error.png").exists())
+
+    def test_layers_and_halves(self):
+        self.eyes("a.exr", 9, 9, indirect=0.2, indirect_right=0.3, places=self.straight)
+        halves = {"half_a": 0.52, "half_b": 0.48, "half_a_right": 0.5, "half_b_right": 0.5}
+        self.eyes("g.exr", 0.5, 0.5, direct=0.1, direct_right=0.1, indirect=0.4, indirect_right=0.4, **halves)
+        noise = (srgb(0.52) - srgb(0.48)) ** 2 / 4
+        m = self.json("compare", "--eyes", "a.exr", "g.exr", "--exposure", "1")["whole"]
+        self.assertAlmostEqual(m["noise_floor"], noise, delta=1e-7)
+        self.assertAlmostEqual(m["reference_difference"], -noise, delta=1e-7)
+        noise = (srgb(0.42) - srgb(0.38)) ** 2 / 4
+        m = self.json("compare", "--eyes", "a.exr", "g.exr", "--exposure", "1", "--layer", "indirect")
+        self.assertEqual(m["layer"], "indirect")
+        self.assertAlmostEqual(m["whole"]["excess"], (srgb(0.2) - srgb(0.3)) ** 2 - noise, delta=1e-6)
+        # Halves of the right eye count for its layers without --eyes, too.
+        right = self.json("compare", "a.exr", "g.exr", "--exposure", "1", "--layer", "radiance_right")["whole"]
+        self.assertEqual(right["noise_floor"], 0)
+        self.eyes("g.exr", 0.5, 0.5, half_a=0.5, half_b=0.5, half_a_right=0.5)
+        self.fails(BAD_INPUT, "compare", "--eyes", "a.exr", "g.exr", says=["only one", "`half_b_right`"])
+
+    def test_rendered(self):
+        options = ["--scene", "cornellbox", "--size", "32x32"]
+        self.succeeds("render", "ir_stereo", *options, "--set", "vpl_count=16", "--set", "map_size=16", "--frames", "2",
+                      "-o", "a_%d.exr")
+        self.succeeds("render", "alternatives/reference_stereo", *options, "--set", "spp=8", "--frames", "2", "-o", "g_%d.exr")
+        m = self.json("compare", "--eyes", "a_1.exr", "g_1.exr")
+        self.assertEqual((m["layer"], m["exposure"]), ("radiance", 1.25))
+        self.assertGreater(m["whole"]["share"], 0.9)
+        for region in ("fovea", "periphery", "whole"):
+            for key in ("difference", "reference_difference", "excess", "noise_floor"):
+                self.assertIsInstance(m[region][key], float, (region, key))
+        sequence = self.json("compare-sequence", "--eyes", "a_%d.exr", "g_%d.exr", "--layer", "indirect")
+        self.assertEqual((sequence["frames"], sequence["layer"]), (2, "indirect"))
+        self.assertGreater(sequence["whole"]["flicker_noise_floor"], 0)
+        # The reference against itself, whose noise is then in no difference.
+        self.assertAlmostEqual(self.json("compare", "--eyes", "g_0.exr", "g_0.exr")["whole"]["excess"]
+                               + self.json("compare", "--eyes", "g_0.exr", "g_0.exr")["whole"]["noise_floor"], 0)
+
+    def test_sequence(self):
+        for i, right in enumerate((0.2, 0.3, 0.3)):
+            self.eyes(f"a/f_{i}.exr", 0.2, right)
+            self.eyes(f"g/f_{i}.exr", 0.2, 0.2, places=self.straight)
+        m = self.json("compare-sequence", "--eyes", "a", "g")
+        self.assertEqual((m["frames"], m["first_frame"], m["whole"]["pixels"]), (3, 0, 360))
+        step = (srgb(0.3) - srgb(0.2)) ** 2
+        self.assertAlmostEqual(m["whole"]["excess"], 2 * step / 3, delta=1e-6)
+        self.assertAlmostEqual(m["whole"]["flicker"], step / 2, delta=1e-6)
+        self.assertIsNone(m["whole"]["flicker_noise_floor"])
+        self.assertRegex(self.succeeds("compare-sequence", "--eyes", "a", "g").stdout, r"flicker +its noise\n")
+        self.eyes("a/f_1.exr", 0.2, 0.3, window=(0, 0, 8, 8))
+        self.eyes("g/f_1.exr", 0.2, 0.2, window=(0, 0, 8, 8), places=self.straight)
+        self.fails(BAD_INPUT, "compare-sequence", "--eyes", "a", "g", says=["a/f_1.exr", "other pixels"])
+
+    def test_what_cannot_be_compared(self):
+        self.eyes("a.exr", 0.2, 0.3)
+        self.eyes("g.exr", 0.2, 0.2, places=self.straight)
+        fails = lambda a, g, *says, options=(): self.fails(BAD_INPUT, "compare", "--eyes", a, g, *options, says=says)
+        one = exr.Part({f"radiance.{c}": lambda x, y: 0.5 for c in "RGB"}, self.WINDOW)
+        exr.write(self.folder / "one.exr", one)
+        fails("one.exr", "g.exr", "one.exr", "`radiance_right`", "it has `radiance`", "`stereo`")
+        fails("a.exr", "one.exr", "one.exr", "`radiance_right`", "`alternatives/reference_stereo`")
+        fails("a.exr", "g.exr", "a.exr", "`indirect`", options=["--layer", "indirect"])
+        fails("a.exr", "a.exr", "`correspondence`", "`alternatives/reference_stereo`")
+        self.pfm("a.pfm", 0.5)
+        fails("a.pfm", "g.exr", "a.pfm", "`radiance`", "one picture alone")
+        fails("none.exr", "g.exr", "none.exr")
+        self.eyes("wide.exr", 0.2, 0.2, window=(0, 0, 17, 8))
+        fails("wide.exr", "g.exr", "wide.exr", "17x8", "16x8", "--size")
+        self.eyes("crop.exr", 0.2, 0.2, window=(4, 2, 6, 4), display=self.WINDOW)
+        fails("crop.exr", "g.exr", "crop.exr", "6x4 from 4, 2", "16x8", "whole pictures")
+        self.eyes("bad.exr", 0.2, math.nan)
+        fails("bad.exr", "g.exr", "bad.exr", "`radiance_right`", "NaN")
+        for places in ((99, 0.5, 1), (0.5, 0.5, 3.5), (0.5, 0.5, 16), (-0.25, 0.5, 1)):
+            self.eyes("bad.exr", 0.2, 0.2, places=lambda x, y, p=places: p if (x, y) == (3, 5) else (0, 0, 0))
+            fails("a.exr", "bad.exr", "pixel 3, 5", "`correspondence`")
+        self.eyes("bad.exr", 0.2, 0.2, places=lambda x, y: (math.inf, 0, 1))
+        fails("a.exr", "bad.exr", "bad.exr", "`correspondence`", "infinity")
+        parts = [exr.Part({c: lambda x, y: 0.5 for c in "RGB"}, window, self.WINDOW, name=name)
+                 for name, window in (("radiance", self.WINDOW), ("radiance_right", self.WINDOW),
+                                      ("correspondence", (0, 0, 8, 8)))]
+        exr.write(self.folder / "parts.exr", *parts)
+        fails("a.exr", "parts.exr", "parts.exr", "`correspondence`", "16x8", "8x8")
+        for option in (["--halves", "g.exr", "g.exr"], ["--ppd", "30"]):
+            self.fails(USAGE, "compare", "--eyes", "a.exr", "g.exr", *option, says=["--eyes", option[0]])
+
+
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
