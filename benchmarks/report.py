@@ -292,9 +292,10 @@ class Report:
             rows = {"picture": [self.picture(n, width) for n in names],
                     "half of the fovea, enlarged": [self.picture(n, width, d) if d else "" for n, d in zip(names, discs)],
                     "error against the reference, its noise included; circle: fovea": [self.picture(n + "-error", width) for n in names],
-                    "change between the last two frames that is not the reference's, its noise included": [self.picture(n + "-temporal", width) for n in names]}
+                    "change between the last two frames that is not the reference's, its noise included": [self.picture(n + "-temporal", width) for n in names],
+                    "difference of the eyes that is not the reference's, its noise included; black: seen by the left eye alone": [self.picture(n + "-eyes", width) for n in names]}
             if disc:
-                truths = [self.picture(names[0] + "-reference", width), self.picture(names[0] + "-reference", width, disc), "", ""]
+                truths = [self.picture(names[0] + "-reference", width), self.picture(names[0] + "-reference", width, disc), "", "", ""]
                 for truth, row in zip(truths, rows.values()):
                     row.insert(0, truth)
             self.add(f"<h3>{html.escape(scene)}</h3><div class=grid><table class=pics><tr><td></td>" +

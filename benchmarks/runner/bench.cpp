@@ -67,10 +67,10 @@ Room roomFor(const std::vector<const Job*>& jobs) {
     if (!job.needsReference()) continue;
     for (uint32_t f = job.temporal ? 0 : job.frames - 1; f < job.frames; ++f)
       if (references
-              .insert(fmt::format("{} {} {} {} {} {}", job.scene, job.first + f, job.size.x, job.size.y,
-                                  job.frameRate, job.spp))
+              .insert(fmt::format("{} {} {} {} {} {} {}", job.scene, job.first + f, job.size.x, job.size.y,
+                                  job.frameRate, job.spp, job.eyes))
               .second)
-        room.references += 5 * 3 * sizeof(float) * pixels;
+        room.references += (job.eyes ? 11 : 5) * 3 * sizeof(float) * pixels;
   }
   return room;
 }
@@ -186,7 +186,8 @@ std::vector<std::string> Bench::referencesToMake(const Job& job) {
   std::error_code ignored;
   for (const BenchRunner::Reference& r : runner_->references(job)) {
     if (fs::exists(folder_.reference(r.name), ignored)) continue;
-    estimate_.addReference(r.name, double(job.size.x) * double(job.size.y) * double(job.spp));
+    estimate_.addReference(
+        r.name, (job.eyes ? 2.0 : 1.0) * double(job.size.x) * double(job.size.y) * double(job.spp));
     names.push_back(r.name);
   }
   return names;

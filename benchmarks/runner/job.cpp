@@ -30,7 +30,10 @@ using Json = nlohmann::ordered_json;
 constexpr uint32_t kReferenceSeed = 4711;  // no method is run with this seed
 constexpr const char* kLayers[] = {"radiance", "direct", "indirect", "half_a", "half_b"};
 
-bool isLayer(const std::string& output) {
+// eyes: whether layers of the right eye count, and the places that it has in common with the left one.
+bool isLayer(std::string_view output, bool eyes) {
+  if (eyes && output == "correspondence") return true;
+  if (eyes && output.ends_with("_right")) output.remove_suffix(std::string_view("_right").size());
   return std::find(std::begin(kLayers), std::end(kLayers), output) != std::end(kLayers);
 }
 constexpr uint64_t kMostFurtherFrames = 8;
@@ -95,6 +98,11 @@ void addSecondEye(Json& time) {
                         {"new_pixels", pixels > 0 ? Json(fresh / pixels) : Json()}};
 }
 
+// The first eye of the one for two is the left one, which is what graphs for two eyes call `radiance`.
+const char* referenceGraph(const Job& job) {
+  return job.eyes ? "alternatives/reference_stereo" : "reference";
+}
+
 // All frames use the same random numbers: remaining noise stands still as far as the picture does, and less of it is
 // in the changes between frames.
 std::vector<std::pair<std::string, std::string>> referenceParameters(const Job& job) {
@@ -144,7 +152,7 @@ std::unique_ptr<session::GraphRun> BenchRunner::makeRun(const Job& job, bool pic
     options.readback = [&](const graph::BoundGraph& graph) {
       std::vector<std::string> names;
       for (const graph::BoundOutput& output : graph.outputs)
-        if (pictures && isLayer(output.name)) names.push_back(output.name);
+        if (pictures && isLayer(output.name, job.eyes)) names.push_back(output.name);
       return names;
     };
     options.hostProgress = [this](const std::string& pass, double share) {
@@ -168,12 +176,19 @@ std::optional<Fingerprint> BenchRunner::fingerprint(const Job& job, std::string&
   if (job.match) probe.set.emplace_back(job.match->parameter, std::to_string(job.match->to));
   const auto run = makeRun(probe, true);
   if (job.needsReference()) {
-    const auto& outputs = run->graph().outputs;
-    if (std::none_of(outputs.begin(), outputs.end(),
-                     [](const graph::BoundOutput& o) { return o.name == "radiance"; }))
+    const auto lacks = [&](const std::string& name) {
+      return std::ranges::none_of(run->graph().outputs,
+                                  [&](const graph::BoundOutput& o) { return o.name == name; });
+    };
+    if (lacks("radiance"))
       rethrowAt(Error(ExitCode::BadInput, "its outputs lack `radiance`",
                       "add it, or leave out the measures of errors"),
                 job.graphWhere, "the errors of graph `" + job.graph + "` cannot be measured");
+    for (const std::string& layer : {job.layer, job.layer + "_right"})
+      if (job.eyes && lacks(layer))
+        rethrowAt(Error(ExitCode::BadInput, "its outputs lack `" + layer + "`",
+                        "take a graph for two eyes, as `stereo`, or leave out the measure `eyes`"),
+                  job.graphWhere, "the eyes of graph `" + job.graph + "` cannot be compared");
   }
   Fingerprint made;
   made.parts = {{"format", kBenchFormat},
@@ -188,15 +203,16 @@ std::optional<Fingerprint> BenchRunner::fingerprint(const Job& job, std::string&
   return made;
 }
 
-// Only the output of the path tracer, which works on the CPU, is stored, so later passes do not count.
+// What is stored is the light and, for two eyes, the places that they have in common, so passes that display it do not
+// count.
 Json BenchRunner::referenceParts(const Job& job) {
   Diagnostics messages;
-  const auto description = describe("reference", referenceParameters(job), messages);
+  const auto description = describe(referenceGraph(job), referenceParameters(job), messages);
   const auto bound =
       graph::bind(description, session::sceneEnvironment(nullptr, scene_, geometry_, job.size), messages);
   Json parts = Json::object();
   for (const graph::BoundPass& pass : bound.passes) {
-    if (pass.declaration->kind != graph::PassKind::Host) continue;
+    if (pass.declaration->type == "tonemap" || pass.declaration->type == "side-by-side") continue;
     Hasher parameters;
     for (const graph::Value& value : pass.parameters.values()) parameters.add(value);
     parameters.add(bound.view.text("materials"));
@@ -206,10 +222,10 @@ Json BenchRunner::referenceParts(const Job& job) {
   return parts;
 }
 
-image::File BenchRunner::toFile(const session::GraphRun& run, graph::FrameResult& result) const {
+image::File BenchRunner::toFile(const session::GraphRun& run, graph::FrameResult& result, bool eyes) const {
   image::File file;
   for (auto& [name, output] : result.outputs) {
-    if (!isLayer(name)) continue;
+    if (!isLayer(name, eyes)) continue;
     file.layers.push_back({name, image::toRgb(session::toImage(output))});
     output.bytes = {};
   }
@@ -262,8 +278,8 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
   }
   throwIfInterrupted();
   for (graph::FrameResult& result : kept) {
-    sequence.frames.push_back(toFile(*run, result));
-    if (&result != &kept.back())  // only the last frame needs its other layers
+    sequence.frames.push_back(toFile(*run, result, job.eyes));
+    if (&result != &kept.back() && !job.eyes)  // only the last frame needs its other layers
       std::erase_if(sequence.frames.back().layers,
                     [&](const image::Layer& l) { return l.name != job.layer && l.name != "indirect"; });
   }
@@ -310,7 +326,7 @@ bool BenchRunner::makeReference(const Job& job, const Reference& wanted) {
 
 image::File BenchRunner::reference(const Job& job, uint64_t frame) {
   Job own = job;
-  own.graph = "reference", own.match.reset();
+  own.graph = referenceGraph(job), own.match.reset();
   own.set = referenceParameters(job);
   own.seed = kReferenceSeed, own.first = uint32_t(frame), own.frames = 1, own.warmup = 0;
   own.temporal = own.error = false, own.pictures = true;
@@ -328,7 +344,7 @@ image::File BenchRunner::reference(const Job& job, uint64_t frame) {
         auto result = run->executor().next();
         throwIfInterrupted();
         progress_.clear();
-        image::File file = toFile(*run, *result);
+        image::File file = toFile(*run, *result, job.eyes);
         const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
         made_.emplace_back(name, spent.count());
         return file;
@@ -408,6 +424,7 @@ Json BenchRunner::measure(const Job& wanted, const Fingerprint& fingerprint) {
   result["time"] = sequence.time;
   if (job.error) result["error"] = errors(job, sequence.frames.back());
   if (job.temporal) result["temporal"] = temporal(job, sequence);
+  if (job.eyes) result["eyes"] = eyes(job, sequence);
   if (job.pictures && !job.error && !sequence.frames.empty()) {
     const image::File& last = sequence.frames.back();
     if (const image::Image* radiance = last.find("radiance"))

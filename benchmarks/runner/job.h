@@ -47,12 +47,13 @@ class BenchRunner {
   bool useScene(const Job& job, std::string& why);
   std::unique_ptr<session::GraphRun> makeRun(const Job& job, bool pictures);
   Sequence render(const Job& job);
-  image::File toFile(const session::GraphRun& run, graph::FrameResult& result) const;
+  image::File toFile(const session::GraphRun& run, graph::FrameResult& result, bool eyes) const;
   Reference referenceOf(const Job& job, uint64_t frame, const std::string& parts);
   image::File reference(const Job& job, uint64_t frame);
   nlohmann::ordered_json referenceParts(const Job& job);
   nlohmann::ordered_json errors(const Job& job, const image::File& last);
   nlohmann::ordered_json temporal(const Job& job, const Sequence& sequence);
+  nlohmann::ordered_json eyes(const Job& job, const Sequence& sequence);
   nlohmann::ordered_json search(Job& job);
   double errorWith(const Job& job, uint32_t count);
   void writePicture(const std::string& name, const image::Image& picture) const;

@@ -5,6 +5,7 @@
 
 #include "benchmarks/runner/job.h"
 #include "framework/image/error_picture.h"
+#include "framework/image/eyes.h"
 #include "framework/image/flip.h"
 #include "framework/image/metrics.h"
 #include "framework/session/compared.h"
@@ -90,6 +91,12 @@ Json regionOf(const image::SequenceMeasures& m, const image::SequenceMeasures* i
           {"excess_noise_floor", known(m.excessNoiseFloor)}};
 }
 
+Json regionOf(const image::EyeMeasures& m, bool sequence) {
+  Json json = {{"pixels", m.pixels}};
+  for (const auto& [name, value] : image::namedMeasures(m, sequence)) json[name] = known(value);
+  return json;
+}
+
 }  // namespace
 
 Json BenchRunner::errors(const Job& job, const image::File& last) {
@@ -148,6 +155,29 @@ Json BenchRunner::temporal(const Job& job, const Sequence& sequence) {
   return {{"fovea", regionOf(all.fovea, light ? &light->fovea : nullptr)},
           {"periphery", regionOf(all.periphery, light ? &light->periphery : nullptr)},
           {"whole", regionOf(all.whole, light ? &light->whole : nullptr)}};
+}
+
+// Of the last frame, or of all frames if they were kept.
+Json BenchRunner::eyes(const Job& job, const Sequence& sequence) {
+  const uint64_t first = uint64_t(job.first) + job.frames - sequence.frames.size();
+  session::CompareOptions options;
+  options.layer = job.layer;
+  image::EyesComparison comparison;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    const image::File truth = reference(job, first + i);
+    progress_.stage("measuring");
+    const session::ComparedEyes pair =
+        session::compareEyes("picture", sequence.frames[i], "reference", truth, options);
+    pair.addTo(comparison);
+    if (job.pictures && i + 1 == sequence.frames.size())
+      writePicture(job.name() + "-eyes",
+                   image::errorPicture(comparison.pixelExcess(), pair.correspondence.width, kErrorScale,
+                                       &pair.left.fovea));
+  }
+  const auto all = comparison.result();
+  return {{"fovea", regionOf(all.fovea, job.temporal)},
+          {"periphery", regionOf(all.periphery, job.temporal)},
+          {"whole", regionOf(all.whole, job.temporal)}};
 }
 
 }  // namespace fovea::bench

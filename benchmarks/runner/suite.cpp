@@ -254,15 +254,15 @@ class SuiteReader {
   }
 
   void readMeasures(ObjectReader& r, Settings& s) {
-    static const std::vector<std::string> kKnown = {"error", "temporal", "pictures", "time"};
+    static const std::vector<std::string> kKnown = {"error", "temporal", "eyes", "pictures", "time"};
     const Texts names = texts(r, "measures");
     if (r.has("measures")) s.measures.clear();
     for (const auto& name : names) {
       if (std::find(kKnown.begin(), kKnown.end(), name.value) == kKnown.end()) {
         const std::string nearest = nearestName(name.value, kKnown);
-        messages_.error(
-            name.where, r.pathOf("measures"), "there is no measure `" + name.value + "`",
-            nearest.empty() ? "known: error, temporal, pictures, time" : "did you mean `" + nearest + "`?");
+        messages_.error(name.where, r.pathOf("measures"), "there is no measure `" + name.value + "`",
+                        nearest.empty() ? "known: error, temporal, eyes, pictures, time"
+                                        : "did you mean `" + nearest + "`?");
       }
       s.measures.push_back(name.value);
     }
@@ -407,7 +407,8 @@ class SuiteReader {
     job.sweep = sweep, job.scene = scene.value, job.graph = graph.graph, job.label = graph.label;
     job.first = s.first, job.frames = s.frames, job.warmup = graph.warmup.value_or(s.warmup);
     job.spp = s.spp, job.depth = s.depth, job.layer = s.layer;
-    job.error = has("error"), job.temporal = has("temporal"), job.pictures = has("pictures");
+    job.error = has("error"), job.temporal = has("temporal"), job.eyes = has("eyes");
+    job.pictures = has("pictures");
     job.match = graph.match;
     job.sceneWhere = scene.where, job.graphWhere = graph.where;
     job.sceneOptional = overrides_.scenes.empty() && optional_.count(scene.value) > 0;

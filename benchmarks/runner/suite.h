@@ -35,16 +35,17 @@ struct Job {
   glm::uvec2 size{256};
   uint32_t first = 40, frames = 1, warmup = 0, seed = 1;
   double frameRate = 42;
-  uint32_t spp = 512, depth = 4;                           // of the reference
-  bool error = false, temporal = false, pictures = false;  // times and counters are always measured
-  std::string layer = "radiance";                          // the layer that is compared; or "indirect"
+  uint32_t spp = 512, depth = 4;  // of the reference
+  // Times and counters are always measured.
+  bool error = false, temporal = false, eyes = false, pictures = false;
+  std::string layer = "radiance";  // the layer that is compared; or "indirect"
   std::optional<Match> match;
   SourceLocation sceneWhere, graphWhere;
   bool sceneOptional = false;
 
   // Name for files and --only, such as "stills-cornellbox-ours-vpl_count=250-s1".
   std::string name() const;
-  bool needsReference() const { return error || temporal; }
+  bool needsReference() const { return error || temporal || eyes; }
   nlohmann::ordered_json json() const;  // without places in files; equal jobs have equal texts
 };
 

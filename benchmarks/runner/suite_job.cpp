@@ -21,6 +21,7 @@ nlohmann::ordered_json Job::json() const {
   nlohmann::ordered_json measures = nlohmann::ordered_json::array({"time"});
   if (error) measures.push_back("error");
   if (temporal) measures.push_back("temporal");
+  if (eyes) measures.push_back("eyes");
   if (pictures) measures.push_back("pictures");
   nlohmann::ordered_json all = {{"sweep", sweep},           {"scene", scene},    {"graph", graph},
                                 {"label", label},           {"set", parameters}, {"varied", axes},

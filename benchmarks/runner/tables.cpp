@@ -182,9 +182,10 @@ std::string csvOf(const Table& table, const Json& paper, const std::string& pape
 std::string shownOf(const std::string& sweep, const Table& table, const Json& paper,
                     const std::string& paperTable) {
   std::vector<std::string> measures;
-  for (const char* wanted : {"error.fovea.mse", "error.periphery.mse", "temporal.fovea.mse_prime",
-                             "temporal.periphery.mse_prime", "temporal.fovea.excess",
-                             "temporal.periphery.excess", "time.wall_ms", kMatch, "speed_up.", "second_eye."})
+  for (const char* wanted :
+       {"error.fovea.mse", "error.periphery.mse", "temporal.fovea.mse_prime", "temporal.periphery.mse_prime",
+        "temporal.fovea.excess", "temporal.periphery.excess", "eyes.fovea.excess", "eyes.periphery.excess",
+        "eyes.fovea.flicker", "eyes.periphery.flicker", "time.wall_ms", kMatch, "speed_up.", "second_eye."})
     for (const Row& row : table.rows)
       for (const std::string& name : row.order)
         if (name.starts_with(wanted) && !name.ends_with("_over_ours") &&
@@ -231,7 +232,7 @@ std::vector<std::pair<std::string, double>> numbersOf(const Json& result) {
   const auto add = [&](const std::string& name, const Json& value) {
     if (value.is_number()) list.emplace_back(name, value.get<double>());
   };
-  for (const char* part : {"error", "temporal"})
+  for (const char* part : {"error", "temporal", "eyes"})
     if (result.contains(part))
       for (const auto& [region, measures] : result[part].items()) {
         add(fmt::format("{}.{}", part, region), measures);  // of the whole picture

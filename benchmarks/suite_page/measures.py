@@ -73,6 +73,22 @@ MEASURES = {
     "temporal.fovea.mse": Measure(
         "MSE fovea, all frames ×10⁻³", 1e3, LOWER,
         "mean over the frames of the sequence"),
+    "eyes.fovea.excess": Measure(
+        "eyes excess fovea ×10⁻³", 1e3, LOWER,
+        "mean square of (difference of the eyes - that of the reference's) beyond parallax, reference noise "
+        "subtracted"),
+    "eyes.periphery.excess": Measure(
+        "eyes excess periphery ×10⁻³", 1e3, LOWER,
+        "the same outside the fovea of the left eye"),
+    "eyes.fovea.flicker": Measure(
+        "eyes flicker fovea ×10⁻³", 1e3, LOWER,
+        "mean square of the change of that difference from frame to frame, less that of the reference"),
+    "eyes.periphery.flicker": Measure(
+        "eyes flicker periphery ×10⁻³", 1e3, LOWER,
+        "the same outside the fovea of the left eye"),
+    "eyes.whole.share": Measure(
+        "both eyes see", 1, NEITHER,
+        "share of the left eye's pixels whose surface the right one sees, too"),
     "time.wall_ms": Measure(
         "frame ms", 1, LOWER,
         "wall time of a frame, median"),

@@ -86,6 +86,52 @@ class BenchSuites(CliTest):
             self.assertAlmostEqual(m[region]["mse"], result["error"][region]["mse"], delta=1e-9)
             self.assertAlmostEqual(m[region]["direct_floor"], result["error"][region]["direct_floor"], delta=1e-9)
 
+    def test_eyes(self):
+        """The eyes of a stereo graph, of the last frame or of all, as `compare` finds them."""
+        graph = {"graph": "ir_stereo", "set": {"vpl_count": 16, "map_size": 16}}
+        self.suite(scenes=["cornellbox"], sweeps=[
+            {"name": "last", "graphs": [graph], "measures": ["eyes", "error", "pictures"]},
+            {"name": "both", "graphs": [graph], "layer": "indirect", "measures": ["eyes", "temporal"]},
+            {"name": "alone", "graphs": [{"graph": "ir_1000", "set": graph["set"]}], "measures": ["error"]}])
+        run = self.succeeds("bench", "tiny.json", "-o", "out")
+        self.assertRegex(run.stdout, r"(?m)^scene +graph .*eyes\.fovea\.excess")
+        results = {r["job"]["sweep"]: r for r in self.results().values()}
+        self.assertNotIn("eyes", results["alone"])
+        # Two for both eyes, of which the sweeps share one, and one of the other graph.
+        self.assertEqual(len(list((self.folder / "out/references").iterdir())), 3)
+        self.assertTrue((self.folder / "out/pictures/last-cornellbox-ir_stereo-s1-eyes.png").exists())
+        (self.folder / "a").mkdir()
+        self.succeeds("render", "ir_stereo", "--scene", "cornellbox", "--size", "32x32", "--first", 3, "--frames", 2, "--set",
+                      "vpl_count=16", "--set", "map_size=16", "-o", "a/f_%d.exr")
+        (self.folder / "g").mkdir()
+        for frame in 3, 4:
+            found = [f for f in (self.folder / "out/references").glob(f"*-f{frame}-*.exr") if b"correspondence" in f.read_bytes()]
+            self.assertEqual(len(found), 1)
+            shutil.copy(found[0], self.folder / f"g/f_{frame}.exr")
+        last = json.loads(self.succeeds("compare", "--eyes", "a/f_4.exr", "g/f_4.exr", "--json").stdout)
+        both = json.loads(self.succeeds("compare-sequence", "--eyes", "a", "g", "--layer", "indirect", "--json").stdout)
+        for region in ("fovea", "periphery", "whole"):
+            self.assertEqual(results["last"]["eyes"][region], last[region])
+            self.assertEqual(results["both"]["eyes"][region], both[region])
+            self.assertIsInstance(both[region]["flicker"], float)
+        # The errors are those of the left eye.
+        error = json.loads(self.succeeds("compare", "a/f_4.exr", "g/f_4.exr", "--json").stdout)["whole"]["mse"]
+        self.assertAlmostEqual(results["last"]["error"]["whole"]["mse"], error, delta=1e-9)
+        self.assertEqual(float(self.rows("both")["cornellbox", "ir_stereo", "eyes.fovea.flicker"]["mean"]),
+                         float(f"{both['fovea']['flicker']:.6g}"))
+        page = self.folder / "out/report.html"
+        if page.exists():
+            self.assertIn("eyes excess fovea", page.read_text())
+
+    def test_eyes_of_a_graph_for_one(self):
+        suite = self.write("tiny.json", json.dumps({**SUITE, "measures": ["eyes"]}, indent=1))
+        line = next(i for i, text in enumerate(suite.read_text().splitlines(), 1) if '"graph": "direct"' in text) - 1
+        run = self.call("bench", "tiny.json", "-o", "out")
+        self.assertEqual(run.returncode, BAD_INPUT)
+        for text in (f"tiny.json:{line}:", "the eyes of graph `direct` cannot be compared", "`radiance_right`", "as `stereo`"):
+            self.assertIn(text, run.stderr)
+        self.assertFalse(self.results())
+
     def test_two_shards_at_once(self):
         """Two processes share the folder and its references; together they do what one does alone."""
         self.suite()

@@ -53,7 +53,7 @@ TEST(BenchSuite, JobsAreAllCombinationsOneSceneAfterTheOtherSeedBySeed) {
 TEST(BenchSuite, ASweepsWordReplacesTheHeads) {
   const Suite suite = parseSuite(R"({
     "scenes": ["a"], "graphs": ["ours"], "size": "64x32", "frames": 3, "reference": {"spp": 7}, "measures": ["time"],
-    "sweeps": [{"name": "n"}, {"name": "m", "size": ["8x8", "9x9"], "frame_rate": 84, "reference": {"depth": 2}, "measures": ["temporal"]}]
+    "sweeps": [{"name": "n"}, {"name": "m", "size": ["8x8", "9x9"], "frame_rate": 84, "reference": {"depth": 2}, "measures": ["temporal", "eyes"]}]
   })",
                                  "s.json");
   ASSERT_EQ(suite.jobs.size(), 3u);
@@ -65,7 +65,9 @@ TEST(BenchSuite, ASweepsWordReplacesTheHeads) {
   EXPECT_EQ(suite.jobs[2].spp, 7u);
   EXPECT_EQ(suite.jobs[2].depth, 2u);
   EXPECT_TRUE(suite.jobs[2].temporal);
+  EXPECT_TRUE(suite.jobs[2].eyes);
   EXPECT_FALSE(suite.jobs[2].error);
+  EXPECT_EQ(suite.jobs[2].json()["measures"], (std::vector<std::string>{"time", "temporal", "eyes"}));
 }
 
 TEST(BenchSuite, SizeAndSeedsOfTheCommandLine) {
@@ -199,6 +201,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "[\"eror\"], \"sweeps\": []}",
                 "s.json:2:14: error: there is no measure `eror` (at "
                 "measures)\n  -> did you mean `error`?"},
+        Mistake{"UnknownMeasureOfEyes",
+                "{\"scenes\": [\"a\"], \"graphs\": [\"g\"],\n\"measures\": "
+                "[\"eye\"], \"sweeps\": []}",
+                "s.json:2:14: error: there is no measure `eye` (at "
+                "measures)\n  -> did you mean `eyes`?"},
         Mistake{"BadSize", "{\"size\": \"0x4\", \"sweeps\": []}",
                 "s.json:1:10: error: expected a size like \"256x256\", 1 to "
                 "16384 pixels a side, found the text \"0x4\" (at size)"},
