@@ -22,6 +22,15 @@ F load(VkInstance instance, const char* name) {
   return reinterpret_cast<F>(vkGetInstanceProcAddr(instance, name));
 }
 
+const PhysicalDevice& chosenBy(const DeviceMaker& maker, VkInstance instance,
+                               const std::vector<PhysicalDevice>& devices) {
+  const auto found = std::ranges::find(devices, maker.choose(instance), &PhysicalDevice::handle);
+  if (found == devices.end())
+    throw Error(ExitCode::NoDevice, "the Vulkan device that the display needs does not exist",
+                "install the driver of the GPU to which it is connected");
+  return choose(devices, std::to_string(found->info.index));  // which refuses one that lacks something
+}
+
 }  // namespace
 
 std::vector<DeviceInfo> listDevices() {
@@ -44,7 +53,7 @@ struct Device::Impl {
   void choose(const PhysicalDevice& chosen, const std::vector<std::string>& without);
   bool lacks(std::string_view feature) const;
   void chooseFeatures(FeatureChain& enabled) const;
-  void createDevice(const FeatureChain& enabled);
+  void createDevice(const FeatureChain& enabled, const DeviceMaker* maker);
   void start(const FeatureChain& enabled, const DeviceOptions& options);
   void describe(const FeatureChain& enabled);
   void createCaches(const DeviceOptions& options);
@@ -110,7 +119,7 @@ void Device::Impl::createInstanceAndMessenger(const DeviceOptions& options) {
   info.pfnUserCallback = onMessage;
   info.pUserData = &log;
   bool debugUtils = false;
-  instance = createInstance(options.validation, &info, debugUtils);
+  instance = createInstance(options.validation, &info, debugUtils, options.maker ? &*options.maker : nullptr);
   if (!instance || !debugUtils) return;
   if (options.validation != Validation::Off) {
     const auto create = load<PFN_vkCreateDebugUtilsMessengerEXT>(instance, "vkCreateDebugUtilsMessengerEXT");
@@ -187,7 +196,7 @@ void Device::Impl::choose(const PhysicalDevice& chosen, const std::vector<std::s
   queueFamily = chosen.queueFamily;
 }
 
-void Device::Impl::createDevice(const FeatureChain& enabled) {
+void Device::Impl::createDevice(const FeatureChain& enabled, const DeviceMaker* maker) {
   const float priority = 1;
   VkDeviceQueueCreateInfo queueInfo{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
   queueInfo.queueFamilyIndex = queueFamily;
@@ -203,7 +212,8 @@ void Device::Impl::createDevice(const FeatureChain& enabled) {
   deviceInfo.pQueueCreateInfos = &queueInfo;
   deviceInfo.enabledExtensionCount = uint32_t(extensions.size());
   deviceInfo.ppEnabledExtensionNames = extensions.data();
-  checkOpening(vkCreateDevice(physical, &deviceInfo, nullptr, &device),
+  checkOpening(maker ? maker->createDevice(physical, deviceInfo, &device)
+                     : vkCreateDevice(physical, &deviceInfo, nullptr, &device),
                "starting the device `" + info.name + "`");
   vkGetDeviceQueue(device, queueFamily, 0, &queue);
 }
@@ -268,20 +278,27 @@ void Device::Impl::savePipelineCache() {
 }
 
 Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
+  const DeviceMaker* maker = options.maker ? &*options.maker : nullptr;
+  if (maker && !options.device.empty())
+    throw Error(ExitCode::Usage, "DeviceOptions::device chooses a device, and so does DeviceOptions::maker",
+                "leave one of them alone");
   impl_->createInstanceAndMessenger(options);
   const std::vector<PhysicalDevice> devices = physicalDevices(impl_->instance);
-  impl_->choose(gpu::choose(devices, options.device), options.without);
+  impl_->choose(maker && impl_->instance ? chosenBy(*maker, impl_->instance, devices)
+                                         : gpu::choose(devices, options.device),
+                options.without);
   FeatureChain enabled;
   impl_->chooseFeatures(enabled);
-  impl_->createDevice(enabled);
+  impl_->createDevice(enabled, maker);
   impl_->start(enabled, options);
 }
 
 Device::Device(const ExistingDevice& existing, const DeviceOptions& options)
     : impl_(std::make_unique<Impl>()) {
-  if (!options.device.empty() || options.validation != Validation::Off || options.onValidationMessage)
+  if (!options.device.empty() || options.maker || options.validation != Validation::Off ||
+      options.onValidationMessage)
     throw Error(ExitCode::Usage, "DeviceOptions choose a device or validation for one that exists already",
-                "leave `device`, `validation` and `onValidationMessage` as they are");
+                "leave `device`, `maker`, `validation` and `onValidationMessage` as they are");
   impl_->existing = true;
   FeatureChain enabled;
   impl_->choose(describeExisting(existing, enabled), options.without);

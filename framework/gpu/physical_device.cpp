@@ -372,7 +372,7 @@ FeatureChain::List FeatureChain::optional() {
 }
 
 VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCreateInfoEXT* messenger,
-                          bool& debugUtils) {
+                          bool& debugUtils, const DeviceMaker* maker) {
   uint32_t loader = VK_API_VERSION_1_0;
   checkLoader(vkEnumerateInstanceVersion(&loader), "asking for its version");
   if (loader < VK_API_VERSION_1_3) {
@@ -411,7 +411,8 @@ VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCrea
   info.enabledExtensionCount = uint32_t(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
   VkInstance instance = VK_NULL_HANDLE;
-  const VkResult result = vkCreateInstance(&info, nullptr, &instance);
+  const VkResult result =
+      maker ? maker->createInstance(info, &instance) : vkCreateInstance(&info, nullptr, &instance);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return VK_NULL_HANDLE;
   checkLoader(result, "creating the Vulkan instance");
   return instance;

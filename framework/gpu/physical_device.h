@@ -53,11 +53,12 @@ struct PhysicalDevice {
   DeviceInfo info;
 };
 
-// VK_NULL_HANDLE if there is no driver at all. `debugUtils` tells whether VK_EXT_debug_utils is enabled. Throws
+// VK_NULL_HANDLE if there is no driver at all. `debugUtils` tells whether VK_EXT_debug_utils is enabled. `maker` takes
+// the place of Vulkan's loader unless it is nullptr. Throws
 // Error(NoDevice) if the validation layer is requested but absent, if the loader is older than 1.3, or if a driver or a
 // layer or its description is damaged, and Error(OutOfMemory).
 VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCreateInfoEXT* messenger,
-                          bool& debugUtils);
+                          bool& debugUtils, const DeviceMaker* maker = nullptr);
 
 // Those whose driver cannot say what they offer lack that. Throws Error(NoDevice) and Error(OutOfMemory).
 std::vector<PhysicalDevice> physicalDevices(VkInstance instance);

@@ -136,9 +136,10 @@ scene::Frame GraphRun::frame(const scene::Moment& moment) const {
   return f;
 }
 
-void GraphRun::submit(const scene::Frame& frame, bool readOutputs, bool observe) {
+void GraphRun::submit(const scene::Frame& frame, bool readOutputs, bool observe,
+                      std::span<const graph::OutputCopy> copies) {
   if (executor_->readsGeometry()) scene::moveObjects(frame, geometry_);
-  executor_->submit(frame, readOutputs, observe);
+  executor_->submit(frame, readOutputs, observe, copies);
 }
 
 }  // namespace fovea::session

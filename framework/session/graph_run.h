@@ -5,6 +5,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -74,7 +75,8 @@ class GraphRun {
   scene::Frame frame(uint64_t index) const;
   scene::Frame frame(const scene::Moment& moment) const;
   // To be called after prepare(). Moves the geometry if a pass reads it, then submits the frame.
-  void submit(const scene::Frame& frame, bool readOutputs, bool observe = false);
+  void submit(const scene::Frame& frame, bool readOutputs, bool observe = false,
+              std::span<const graph::OutputCopy> copies = {});
   graph::Executor& executor() { return *executor_; }
   uint32_t inFlight() const { return inFlight_; }
 

@@ -120,5 +120,58 @@ TEST(ExistingDevice, IncompleteOrContradictoryOnesAreRefused) {
   EXPECT_THAT(refusal(ExitCode::Usage, theirs.existing, options), HasSubstr("leave `device`"));
 }
 
+// Stands between fovea and Vulkan as OpenXR does.
+TEST(DeviceMaker, MakesWhatIsAskedForAndChoosesTheDevice) {
+  const scene::Scene scene = scene::builtin("cornellbox");
+  VkPhysicalDevice chosen = VK_NULL_HANDLE, made = VK_NULL_HANDLE;
+  int instances = 0;
+  gpu::DeviceOptions options = cached();
+  options.validation = gpu::Validation::On;
+  options.maker =
+      gpu::DeviceMaker{[&](const VkInstanceCreateInfo& info, VkInstance* instance) {
+                         ++instances;
+                         return vkCreateInstance(&info, nullptr, instance);
+                       },
+                       [&](VkInstance instance) {
+                         uint32_t one = 1;
+                         vkEnumeratePhysicalDevices(instance, &one, &chosen);
+                         return chosen;
+                       },
+                       [&](VkPhysicalDevice physical, const VkDeviceCreateInfo& info, VkDevice* device) {
+                         made = physical;
+                         return vkCreateDevice(physical, &info, nullptr, device);
+                       }};
+  gpu::DeviceOptions first = cached();
+  first.device = "0";
+  const std::shared_ptr<gpu::Device> device = gpu::openDevice(options);
+  EXPECT_EQ(instances, 1);
+  EXPECT_TRUE(chosen);
+  EXPECT_EQ(made, chosen);
+  EXPECT_EQ(device->physical(), chosen);
+  EXPECT_EQ(radianceOn(device, scene), radianceOn(gpu::openDevice(first), scene));
+  EXPECT_THAT(device->validationMessages(), testing::IsEmpty());
+}
+
+TEST(DeviceMaker, IsRefusedBesideAnotherChoiceAndWithoutADevice) {
+  gpu::DeviceOptions options = cached();
+  options.maker = gpu::DeviceMaker{
+      [](const VkInstanceCreateInfo& info, VkInstance* instance) {
+        return vkCreateInstance(&info, nullptr, instance);
+      },
+      [](VkInstance) { return VkPhysicalDevice(VK_NULL_HANDLE); },
+      [](VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice*) { return VK_ERROR_INITIALIZATION_FAILED; }};
+  const auto code = [](const gpu::DeviceOptions& wanted) {
+    try {
+      gpu::openDevice(wanted);
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return ExitCode::Ok;
+  };
+  EXPECT_EQ(code(options), ExitCode::NoDevice);
+  options.device = "0";
+  EXPECT_EQ(code(options), ExitCode::Usage);
+}
+
 }  // namespace
 }  // namespace fovea::test

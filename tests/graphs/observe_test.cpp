@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "framework/gpu/resources.h"
 #include "framework/graph/run/execute.h"
 #include "framework/scene/scene.h"
 #include "framework/session/graph_run.h"
@@ -105,6 +106,43 @@ TEST(Observe, RefusesWhatIsNotThere) {
   EXPECT_THROW(r.run->executor().observe({r.of("a", "gbuffer", "gbuffer.albedo")}), Error);
   r.run->executor().observe({});
   EXPECT_EQ(r.frame(0, true).outputs.size(), 3u);
+}
+
+// As an image of a display is given one: the texels as they are, whatever its format makes of them.
+TEST(OutputCopies, PutOutputsIntoLayersOfImagesOfOthers) {
+  Running r(kGraph);
+  const VkImageLayout layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  gpu::ImageDesc desc;
+  desc.name = "display";
+  desc.format = VK_FORMAT_R8G8B8A8_SRGB;
+  desc.width = 48, desc.height = 32, desc.layers = 2;
+  desc.usage =
+      VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  gpu::Device& device = test::testDevice();
+  gpu::Image display(device, desc);
+  const size_t texels = size_t(48) * 32 * 4;
+  gpu::upload(device, display, std::vector<std::byte>(2 * texels, std::byte{17}), layout);
+  for (uint64_t i = 0; i < 3; ++i) {  // over the frames in flight
+    const OutputCopy copies[] = {{"image", display.handle(), 0, layout},
+                                 {"image", display.handle(), 1, layout}};
+    r.run->submit(r.run->frame(i), true, false, copies);
+    const FrameResult frame = *r.run->executor().next();
+    std::vector<std::byte> twice = frame.outputs.at("image").bytes;
+    ASSERT_EQ(twice.size(), texels);
+    twice.insert(twice.end(), frame.outputs.at("image").bytes.begin(), frame.outputs.at("image").bytes.end());
+    EXPECT_EQ(gpu::download(device, display, layout), twice) << i;
+  }
+}
+
+TEST(OutputCopies, NameTheNearestOutputIfThereIsNone) {
+  Running r(kGraph);
+  const OutputCopy copies[] = {{"imag", VK_NULL_HANDLE}};
+  try {
+    r.run->submit(r.run->frame(0), false, false, copies);
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean `image`?"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace

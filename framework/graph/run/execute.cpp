@@ -347,7 +347,8 @@ void Executor::observe(std::vector<Observation> observations) {
   for (FrameSlot& slot : e.slots) slot.setObserved(observations, e.passes);
 }
 
-void Executor::submit(const scene::Frame& frame, bool readOutputs, bool observe) {
+void Executor::submit(const scene::Frame& frame, bool readOutputs, bool observe,
+                      std::span<const OutputCopy> copies) {
   Impl& e = *impl_;
   const uint32_t slotIndex = static_cast<uint32_t>(e.frameCount % e.slots.size());
   FrameSlot& slot = e.slots[slotIndex];
@@ -401,6 +402,7 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs, bool observe)
   }
   e.emitBarriers(e.plan->end);
   writeTimestamp(e.state, e.cmd);
+  for (const OutputCopy& copy : copies) slot.recordCopy(e.cmd, copy);
   slot.recordReadback(e.cmd);
   e.submitSegment(slot, true);
   slot.cpuMs = millisecondsSince(start);

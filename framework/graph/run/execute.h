@@ -2,6 +2,8 @@
 // does not wait for results.
 #pragma once
 
+#include <vulkan/vulkan.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -54,6 +56,16 @@ struct Observation {
   uint32_t mip = 0, layer = 0;
   uint64_t mostBytes = ~uint64_t(0);
   bool operator==(const Observation&) const = default;
+};
+
+// An image that is not the executor's, such as one of a display, into which a frame copies an output on the device.
+struct OutputCopy {
+  std::string output;  // of the graph, an image
+  VkImage image = VK_NULL_HANDLE;
+  // At least as large as the output, with texels of the same size, which are copied to its top left corner as they are.
+  uint32_t layer = 0;
+  // In which the frame finds the image and leaves it. What was in it before is lost.
+  VkImageLayout layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 };
 
 // The fields of the elements of buffers, by the name of their type (ResourceSpec::element).
@@ -110,8 +122,9 @@ class Executor {
   ElementTypes elementTypes() const;
 
   // Records and submits one frame. Blocks only while framesInFlight frames are unfinished, or for a host pass that
-  // reads what this frame's GPU passes wrote.
-  void submit(const scene::Frame& frame, bool readOutputs = false, bool observe = false);
+  // reads what this frame's GPU passes wrote. Throws Error(BadInput) for a copy of an output that the graph does not have.
+  void submit(const scene::Frame& frame, bool readOutputs = false, bool observe = false,
+              std::span<const OutputCopy> copies = {});
 
   // The oldest finished frame that was not returned yet; nullopt if there is none. Never blocks.
   std::optional<FrameResult> poll();

@@ -11,17 +11,6 @@
 namespace fovea::graph {
 namespace {
 
-uint32_t outputResource(const BoundGraph& graph, const std::string& name) {
-  std::vector<std::string> names;
-  for (const BoundOutput& output : graph.outputs) {
-    if (output.name == name) return output.resource;
-    names.push_back(output.name);
-  }
-  const std::string nearest = nearestName(name, names);
-  throw Error(ExitCode::BadInput, "graph " + graph.name + " has no output `" + name + "`",
-              nearest.empty() ? "" : "did you mean `" + nearest + "`?");
-}
-
 // The entry of this name; it is added if there is none.
 StepTiming& stepTiming(std::vector<StepTiming>& steps, const std::string& name) {
   for (StepTiming& step : steps)
@@ -36,6 +25,16 @@ OutputData readBack(const ResourceDesc& desc, const gpu::Buffer& copied, float p
 }
 
 }  // namespace
+
+uint32_t outputResource(const BoundGraph& graph, std::string_view name) {
+  for (const BoundOutput& output : graph.outputs)
+    if (output.name == name) return output.resource;
+  std::vector<std::string> names;
+  for (const BoundOutput& output : graph.outputs) names.push_back(output.name);
+  const std::string nearest = nearestName(name, names);
+  throw Error(ExitCode::BadInput, "graph " + graph.name + " has no output `" + std::string(name) + "`",
+              nearest.empty() ? "" : "did you mean `" + nearest + "`?");
+}
 
 FrameSlot::FrameSlot(ExecutorState& executorState, const PassInstances& instances,
                      const std::vector<std::string>& readback)

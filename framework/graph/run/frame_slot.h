@@ -76,6 +76,8 @@ struct FrameSlot {
   void setObserved(const std::vector<Observation>& observations, const PassInstances& instances);
   // Copies what is observed of a pass; to be recorded right after it.
   void recordObserved(VkCommandBuffer cmd, const PassInstance& pass);
+  // Copies an output into an image of somebody else's.
+  void recordCopy(VkCommandBuffer cmd, const OutputCopy& copy);
   // Copies the counters and, if requested, the outputs into memory that the host can read.
   void recordReadback(VkCommandBuffer cmd);
   // The result without the wall time; call it after the fence has signalled. `timestamps` are in ns.
@@ -84,6 +86,9 @@ struct FrameSlot {
  private:
   explicit FrameSlot(ExecutorState& executorState) : state(executorState) {}
 };
+
+// Index of the resource that is this output. Throws Error(BadInput) if the graph has none.
+uint32_t outputResource(const BoundGraph& graph, std::string_view name);
 
 // adopt.cpp: what an executor takes over from the one before it.
 std::map<std::string, std::shared_ptr<gpu::Pipeline>, std::less<>> pipelinesOf(const PassInstances& passes);

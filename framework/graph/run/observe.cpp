@@ -24,6 +24,8 @@ ResourceDesc observedPart(const ResourceDesc& all, const Observation& what) {
   return desc;
 }
 
+constexpr VkImageLayout kWritten = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;  // of the target of a copy
+
 void barrier(VkCommandBuffer cmd, const VkImageMemoryBarrier2& image) {
   VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
   info.imageMemoryBarrierCount = 1;
@@ -100,6 +102,24 @@ void FrameSlot::recordObserved(VkCommandBuffer cmd, const PassInstance& pass) {
       copyBuffer(cmd, state.buffer(access), resourceBytes(o.desc), o.buffer);
     if (timed) observeTimes.push_back(writeTimestamp(state, cmd));
   }
+}
+
+void FrameSlot::recordCopy(VkCommandBuffer cmd, const OutputCopy& copy) {
+  const uint32_t resource = outputResource(*state.plan->graph, copy.output);
+  const BoundResource& r = state.plan->graph->resources[resource];
+  const gpu::Image& from = state.resources[resource].images[r.history ? state.parity : 0];
+  VkImageMemoryBarrier2 change = layoutChange(from, VK_IMAGE_LAYOUT_UNDEFINED, kWritten);
+  change.image = copy.image;
+  change.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, copy.layer, 1};
+  barrier(cmd, change);
+  VkImageCopy region{};
+  region.srcSubresource = {from.aspect(), 0, 0, 1};
+  region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, copy.layer, 1};
+  region.extent = {r.desc.width, r.desc.height, 1};
+  vkCmdCopyImage(cmd, from.handle(), state.plan->endLayout[resource], copy.image, kWritten, 1, &region);
+  std::swap(change.oldLayout, change.newLayout);
+  change.newLayout = copy.layout;
+  barrier(cmd, change);
 }
 
 }  // namespace fovea::graph

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,14 @@ class Device;
 
 enum class Validation { Off, On, Synchronization, GpuAssisted, BestPractices };
 
+// What stands between an application and Vulkan, as OpenXR does (XR_KHR_vulkan_enable2): it makes the instance and the
+// device that fovea describes, where it may add what it needs itself, and says which physical device that is to be.
+struct DeviceMaker {
+  std::function<VkResult(const VkInstanceCreateInfo&, VkInstance*)> createInstance;
+  std::function<VkPhysicalDevice(VkInstance)> choose;
+  std::function<VkResult(VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice*)> createDevice;
+};
+
 struct DeviceOptions {
   std::string device;  // index or part of the name; "" selects the best one (discrete, integrated, CPU)
   // Features among those that `fovea render --without` lists, to do without although the device may have them, as if it
@@ -32,6 +41,8 @@ struct DeviceOptions {
   uint64_t memoryLimit = 0;  // bytes of device memory that fovea may use; 0 for what the device reports
   std::filesystem::path cacheDirectory;  // SPIR-V and pipeline cache; "" means $XDG_CACHE_HOME/fovea
   bool useCache = true;
+  // Not set: Vulkan's loader. A maker chooses the device, so `device` must be left alone (Error(Usage)).
+  std::optional<DeviceMaker> maker{};
   // Receives each validation message as it arrives, also those about the destruction of the device itself (objects
   // that were never destroyed). May be called from any thread. Messages are kept as well.
   std::function<void(const std::string&)> onValidationMessage;
@@ -56,8 +67,8 @@ struct ExistingDevice {
   std::vector<std::string> extensions;  // e.g. "VK_KHR_push_descriptor"
 };
 
-// Uses such a device. `options` must leave `device`, `validation` and `onValidationMessage` alone, which whoever makes a
-// device decides (Error(Usage)). Throws Error(NoDevice) with everything that the device lacks: features that are not
+// Uses such a device. `options` must leave `device`, `maker`, `validation` and `onValidationMessage` alone, which
+// whoever makes a device decides (Error(Usage)). Throws Error(NoDevice) with everything that the device lacks: features that are not
 // enabled, Vulkan 1.3, or operations of the queue.
 std::shared_ptr<Device> openDevice(const ExistingDevice& existing, const DeviceOptions& options = {});
 
