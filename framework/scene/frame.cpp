@@ -136,6 +136,13 @@ const View* Frame::findView(std::string_view name) const {
   return nullptr;
 }
 
+size_t viewIndex(std::string_view name) {
+  const auto found = std::ranges::find(kViewNames, name);
+  if (found == std::end(kViewNames))
+    throw Error(ExitCode::Internal, "there is no view `" + std::string(name) + "`");
+  return size_t(found - std::begin(kViewNames));
+}
+
 std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size) {
   std::vector<std::pair<std::string, VkExtent2D>> views;
   for (const char* name : kViewNames) views.emplace_back(name, size);
@@ -177,13 +184,21 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, c
   const auto& gazes = moment.gazes;
   const float sides[] = {0, -1, 1};
   for (size_t i = 0; i < kViews; ++i) {
-    std::optional<Frustum> frustum;
-    if (scene.lens && sides[i] != 0) frustum = frustumOf(*scene.lens, sides[i] < 0);
-    View view = makeView(eyeOf(camera, sides[i], scene.ipd), size, geometry, gazes[i], frustum);
+    const auto viewOf = [&](Camera of, const std::optional<Eye>& eye) {
+      std::optional<Frustum> frustum;
+      if (eye) {
+        of.position = eye->position, of.orientation = eye->orientation;
+        frustum = eye->frustum;
+      } else {
+        of = eyeOf(of, sides[i], scene.ipd);
+        if (scene.lens && sides[i] != 0) frustum = frustumOf(*scene.lens, sides[i] < 0);
+      }
+      return makeView(of, size, geometry, gazes[i], frustum);
+    };
+    View view = viewOf(camera, moment.eyes[i]);
     view.name = kViewNames[i];
     if (!moment.cameraCut)
-      view.previousWorldToClip =
-          makeView(eyeOf(previousCamera, sides[i], scene.ipd), size, geometry, gazes[i], frustum).worldToClip;
+      view.previousWorldToClip = viewOf(previousCamera, moment.previousEyes[i]).worldToClip;
     f.views.push_back(std::move(view));
   }
   ObjectPoses poses = objectsAt(scene, geometry, f.time, moment.before);

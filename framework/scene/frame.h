@@ -38,6 +38,19 @@ inline constexpr const char* kViewNames[] = {"main", "left", "right"};
 // These views, each with the size of the picture, for binding a graph.
 std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size);
 
+// Index in kViewNames. Throws Error(Internal) for another name.
+size_t viewIndex(std::string_view name);
+
+// An eye as a display has it, which need not follow from a camera: world space, relative to Scene::origin. It looks along
+// its -Z, its +Y is up.
+struct Eye {
+  glm::vec3 position{0};  // metres
+  glm::quat orientation{1, 0, 0, 0};
+  Frustum frustum;
+};
+// Of each view; those that are not set follow from the camera.
+using Eyes = std::array<std::optional<Eye>, std::size(kViewNames)>;
+
 // Frames until Frame::saccade is 0 again.
 inline constexpr uint32_t kSaccadeFrames = 8;
 
@@ -46,6 +59,7 @@ struct Moment {
   uint64_t index = 0;           // Frame::index
   double time = 0, before = 0;  // of this frame and of the last one, in seconds
   Camera camera, previousCamera;
+  Eyes eyes, previousEyes;
   std::array<glm::vec2, std::size(kViewNames)> gazes{};  // of each view
   float saccade = 0;                                     // Frame::saccade
   bool cameraCut = false;

@@ -15,10 +15,13 @@ scene::Moment Course::next(const scene::Scene& scene, uint64_t index, const Stee
   m.before = anew ? m.time : shown_.time;
   m.camera = steering.camera.value_or(scene::cameraAt(scene, m.time));
   m.previousCamera = anew ? m.camera : shown_.camera;
+  m.eyes = steering.eyes;
+  m.previousEyes = anew ? m.eyes : shown_.eyes;
   m.cameraCut = anew;
   const scene::GazeSample own = scene::gazeAt(scene.gaze, m.time, scene.gazeGap);
   m.gazes = {own.position, own.left.value_or(own.position), own.right.value_or(own.position)};
-  if (steering.gaze) m.gazes.fill(*steering.gaze);
+  for (size_t i = 0; i < m.gazes.size(); ++i)
+    m.gazes[i] = steering.gazes[i].value_or(steering.gaze.value_or(m.gazes[i]));
   // As scene::momentAt() has it, from the frames as they were shown.
   bool jumped = false;
   for (size_t i = 0; i < m.gazes.size() && !anew; ++i)

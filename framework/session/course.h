@@ -1,7 +1,9 @@
 // The moments of a run that somebody steers: each is relative to the one that was shown before it.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 
 #include "framework/scene/frame.h"
@@ -11,7 +13,9 @@ namespace fovea::session {
 struct Steering {
   double time = 0;                      // of the scene, in seconds
   std::optional<scene::Camera> camera;  // not set: the scene's
+  scene::Eyes eyes{};                   // those that are not set follow from the camera
   std::optional<glm::vec2> gaze;        // of all views; not set: the scene's
+  std::array<std::optional<glm::vec2>, std::size(scene::kViewNames)> gazes{};  // of single views, instead
   bool cut = false;                     // Frame::cameraCut
 };
 

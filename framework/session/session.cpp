@@ -155,8 +155,10 @@ scene::Moment Session::Impl::momentOf(const FrameOptions& frame) {
     return course.shown();
   }
   return course.next(scene, frame.index,
-                     {frame.time.value_or(double(frame.index) / options.frameRate), frame.camera, frame.gaze,
-                      frame.cut || frame.index == 0});
+                     {.time = frame.time.value_or(double(frame.index) / options.frameRate),
+                      .camera = frame.camera,
+                      .gaze = frame.gaze,
+                      .cut = frame.cut || frame.index == 0});
 }
 
 Session::Session(const Document& graph, const scene::Scene& scene, const SessionOptions& options)
