@@ -18,6 +18,7 @@
 #include "framework/scene/motion/motion.h"
 #include "framework/scene/scene.h"
 #include "framework/session/graph_run.h"
+#include "framework/session/head_trace.h"
 #include "framework/session/interrupt.h"
 #include "framework/session/progress.h"
 #include "framework/session/timings.h"
@@ -35,7 +36,8 @@ constexpr double kSlowFrameMs = 500;
 
 struct RenderOptions {
   GraphOptions graph;
-  std::string scene, environment, size = "1024x1024", gaze, gazeTrace, lens, device, timings, trace;
+  std::string scene, environment, size = "1024x1024", gaze, gazeTrace, headTrace, lens, device, timings,
+                                  trace;
   double gazeGapMs = 1000 * scene::kGazeGap, frameLimit = kFrameLimit;
   std::vector<std::string> outputs, without;
   uint32_t first = 0, frames = 1, warmup = 0, seed = 1;
@@ -75,6 +77,8 @@ class Render {
   void writeResults();
   void warnOfLightBeyondRange() const;
   void report() const;
+  void readHeads();
+  scene::Frame frameAt(uint64_t index) const;
   void submit(uint64_t index, bool readOutputs);
   void capture(uint64_t index, bool readOutputs);
   void showFovea();
@@ -90,6 +94,7 @@ class Render {
   graph::Description description_;
   scene::Scene scene_;
   scene::Geometry geometry_;
+  std::vector<scene::Moment> moments_;  // of --head-trace, from the first row on; empty without
   std::unique_ptr<gpu::Capture> capture_;
   std::shared_ptr<gpu::Device> device_;
   std::unique_ptr<session::GraphRun> run_;
@@ -168,9 +173,24 @@ void Render::loadInputs() {
   if (!options_.gazeTrace.empty()) scene_.gaze = std::move(trace);
   if (gaze_) scene_.gaze = {{0, *gaze_, true, {}, {}}};
   scene_.gazeGap = 0.001 * options_.gazeGapMs;
+  if (!options_.headTrace.empty()) readHeads();
   chooseOutputs();
   checkOutputNames();
   stopIfInterrupted();
+}
+
+void Render::readHeads() {
+  moments_ = session::replay(scene_, session::readHeadTrace(options_.headTrace, scene::cameraAt(scene_, 0)));
+  const uint64_t end = uint64_t(options_.first) + options_.warmup + options_.frames;
+  if (moments_.size() < end)
+    throw Error(ExitCode::Usage,
+                fmt::format("{} has {} frames, and the last one of this run is number {}", options_.headTrace,
+                            moments_.size(), end - 1),
+                "choose --first, --warmup and --frames so that they fit");
+}
+
+scene::Frame Render::frameAt(uint64_t index) const {
+  return moments_.empty() ? run_->frame(index) : run_->frame(moments_[index]);
 }
 
 void Render::openDevice() {
@@ -236,14 +256,14 @@ void Render::showFovea() {
         if (output.name == "image" && access.writes && access.resource == output.resource)
           eye = graph.views[pass.view];
   outputs_->setOverlay([this, eye](image::Image& picture, uint64_t index) {
-    const scene::Frame shown = run_->frame(index);
+    const scene::Frame shown = frameAt(index);
     const scene::View& view = *shown.findView(eye);
     const scene::Fovea fovea = scene::makeFovea(view.gaze, {picture.width, picture.height}, view.foveaRadius);
     image::drawFovea(picture, {fovea.centre.x, fovea.centre.y, fovea.radius});
   });
 }
 
-void Render::submit(uint64_t index, bool readOutputs) { run_->submit(run_->frame(index), readOutputs); }
+void Render::submit(uint64_t index, bool readOutputs) { run_->submit(frameAt(index), readOutputs); }
 
 // The capture holds nothing but this frame: those before it have ended, and the next one begins when it has.
 void Render::capture(uint64_t index, bool readOutputs) {
@@ -256,7 +276,7 @@ void Render::capture(uint64_t index, bool readOutputs) {
 }
 
 image::Metadata Render::metadata(uint64_t index) const {
-  const scene::Frame shown = run_->frame(index);
+  const scene::Frame shown = frameAt(index);
   std::string set;
   for (const std::string& text : options_.graph.set) set += (set.empty() ? "" : " ") + text;
   image::Metadata data = {{"version", FOVEA_VERSION},
@@ -447,6 +467,13 @@ void addRender(CLI::App& program, Action& action) {
                        "top left, 0 in a blink) instead of the scene's")
           ->type_name("FILE.csv")
           ->excludes("--gaze");
+  command
+      ->add_option(
+          "--head-trace", options->headTrace,
+          "Head, eyes, gaze and time of every frame, a row each, as `fovea vr --record`\nwrites them")
+      ->type_name("FILE.csv")
+      ->excludes("--gaze")
+      ->excludes("--gaze-trace");
   command
       ->add_option(
           "--gaze-gap", options->gazeGapMs,

@@ -85,6 +85,19 @@ class Usage(CliTest):
         self.write("g.csv", "t,x,y,valid\n0,0.5,0.5,1\nrubbish\n0.2,0.5,7,1\n")
         self.fails(BAD_INPUT, *DIRECT, "--gaze-trace", "g.csv", says=["g.csv:3", "g.csv:4"])
 
+    def test_head_trace(self):
+        head = "t,head.x,head.y,head.z,head.qx,head.qy,head.qz,head.qw\n"
+        self.write("h.csv", head + "0,0,1,3,0,0,0,1\n0.1,0,1,2.5,0,0,0,1\n")
+        for option in ("--gaze=0.5,0.5", "--gaze-trace=g.csv"):
+            self.fails(USAGE, *DIRECT, "--head-trace", "h.csv", option, says=["--head-trace"])
+        self.fails(BAD_INPUT, *DIRECT, "--head-trace", "none.csv", says=["none.csv"])
+        self.fails(USAGE, *DIRECT, "--head-trace", "h.csv", "--frames", "3", says=["h.csv has 2 frames", "number 2"])
+        self.succeeds(*DIRECT, "--head-trace", "h.csv", "--frames", "2", "-o", "walk.png")
+        self.succeeds(*DIRECT, "--head-trace", "h.csv", "--first", "1", "-o", "late.png")
+        self.assertEqual((self.folder / "walk.png").read_bytes(), (self.folder / "late.png").read_bytes())
+        self.write("w.csv", head + "0,0,1,3,0,0,0,1\n0.1,0,1,2.5,0,0,0,3\n")
+        self.fails(BAD_INPUT, *DIRECT, "--head-trace", "w.csv", says=["w.csv:3", "head.qw"])
+
     def test_fovea_degrees(self):
         self.fails(USAGE, *DIRECT, "--fovea-degrees", "61", says=["--fovea-degrees", "0 to 60"])
         self.fails(USAGE, *DIRECT, "--materials", "shiny", says=["--materials", "full"])

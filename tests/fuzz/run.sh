@@ -21,6 +21,7 @@ seeds() {
   case $1 in
     gaze_fuzz) ls $good/*.csv samples/scenes/gazes/*.csv tests/fuzz/corpus/gaze/* ;;
     gltf_fuzz) ls $good/*.gl* tests/fuzz/corpus/gltf/* ;;
+    head_trace_fuzz) ls tests/fuzz/corpus/head_trace/* ;;
     image_fuzz) ls tests/fuzz/corpus/image/* ;;
     graph_fuzz) ls tests/fuzz/corpus/graph/* ;;
     option_fuzz) ls tests/fuzz/corpus/option/* ;;
