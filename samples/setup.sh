@@ -20,6 +20,8 @@ packages=(
   libcivetweb-dev libturbojpeg0-dev
   # images without OpenImageIO, for the preset `portable`
   libpng-dev libstb-dev libtinyexr-dev
+  # `fovea vr`: headers and loader of OpenXR, and its validation layer for tests
+  libopenxr-dev openxr-layer-corevalidation
   # captures of frames
   librenderdoc-dev
   # tests and benchmarks

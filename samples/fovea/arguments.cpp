@@ -103,6 +103,10 @@ void addGraphOptions(CLI::App& command, GraphOptions& options) {
 void addDeviceOptions(CLI::App& command, std::string& device, std::vector<std::string>& without) {
   command.add_option("--device", device, "Vulkan device by number or part of its name; see `fovea devices`")
       ->type_name("D");
+  addWithoutOption(command, without);
+}
+
+void addWithoutOption(CLI::App& command, std::vector<std::string>& without) {
   std::string names;
   for (const std::string& name : gpu::dispensableFeatures()) names += (names.empty() ? "" : ", ") + name;
   addList(command, "--without", without,

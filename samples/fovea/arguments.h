@@ -18,6 +18,8 @@ void addPassesOption(CLI::App& command, std::vector<std::string>& folders);
 void addGraphOptions(CLI::App& command, GraphOptions& options);
 // --device, --without
 void addDeviceOptions(CLI::App& command, std::string& device, std::vector<std::string>& without);
+// --without
+void addWithoutOption(CLI::App& command, std::vector<std::string>& without);
 // --frame-limit
 void addFrameLimitOption(CLI::App& command, double& seconds);
 // --follow-links

@@ -27,6 +27,7 @@ void addCompare(CLI::App& program, Action& action);
 void addBench(CLI::App& program, Action& action);
 void addCompareSequence(CLI::App& program, Action& action);
 void addView(CLI::App& program, Action& action);
+void addVr(CLI::App& program, Action& action);
 void addSceneExport(CLI::App& sceneCommand, Action& action);
 void addBenchModel(CLI::App& benchCommand, Action& action);
 

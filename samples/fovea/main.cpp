@@ -73,6 +73,7 @@ ExitCode parseAndRun(int argc, char** argv) {
   Action action;
   addRender(program, action);
   addView(program, action);
+  addVr(program, action);
   addCheck(program, action);
   addMigrate(program, action);
   addFormat(program, action);
