@@ -149,8 +149,11 @@ TEST(LongEdits, RepeatNothingThatDoesNotDependOnThem) {
     const Work first = frozen.most(2);
     Work later = frozen.most(4);
     keepGreater(later, usual);
-    for (const auto& [pass, commands] : first)
-      if (!isMadeAgain(pass, edit)) EXPECT_LE(commands, later.at(pass)) << edit << ": " << pass;
+    for (const auto& [pass, commands] : first) {
+      if (!isMadeAgain(pass, edit)) {
+        EXPECT_LE(commands, later.at(pass)) << edit << ": " << pass;
+      }
+    }
     frozen.edit({});
     frozen.most(2);
   }
