@@ -50,12 +50,81 @@ glm::mat4 shifted(const glm::mat4& projection, glm::vec2 offset) {
   return m;
 }
 
+// What a view sees, by its projection.
+Frustum frustumOf(const View& view) {
+  const glm::mat4& m = view.viewToClip;
+  return {(1 - m[2][0]) / m[0][0], (1 + m[2][0]) / m[0][0], (m[2][1] - 1) / m[1][1],
+          -(1 + m[2][1]) / m[1][1]};
+}
+
+// The part of an extent [-low, high] that is half as wide and lies around a place of it, 0 to 1.
+std::pair<float, float> halfAround(float low, float high, float place) {
+  const float half = 0.25f * (low + high);
+  const float centre = glm::clamp(glm::mix(-low, high, place), half - low, high - half);
+  return {half - centre, half + centre};
+}
+
+// The inset in what an eye sees.
+Frustum insetOf(const Frustum& eye, glm::vec2 gaze) {
+  const auto [left, right] = halfAround(eye.left, eye.right, gaze.x);
+  const auto [up, down] = halfAround(eye.up, eye.down, gaze.y);
+  return {left, right, up, down};
+}
+
+// A place in the picture of one frustum, in that of another one with the same line of sight.
+glm::vec2 placeIn(const Frustum& to, const Frustum& from, glm::vec2 place) {
+  const glm::vec2 tangent(glm::mix(-from.left, from.right, place.x), glm::mix(-from.up, from.down, place.y));
+  return glm::clamp((tangent + glm::vec2(to.left, to.up)) / glm::vec2(to.left + to.right, to.up + to.down),
+                    0.0f, 1.0f);
+}
+
 constexpr size_t kViews = std::size(kViewNames);
 
-// Where each view's eye looks.
-std::array<glm::vec2, kViews> gazesAt(const Scene& scene, double time) {
-  const GazeSample gaze = gazeAt(scene.gaze, time, scene.gazeGap);
-  return {gaze.position, gaze.left.value_or(gaze.position), gaze.right.value_or(gaze.position)};
+// From where a frame is seen, and where eyes look in it.
+struct Looking {
+  const Camera& camera;
+  const Eyes& eyes;
+  const std::array<glm::vec2, kViews>& gazes;
+};
+
+struct EyeCamera {
+  Camera camera;
+  std::optional<Frustum> frustum{};  // not set: that of the camera
+};
+
+EyeCamera cameraOf(const Camera& camera, const Eye& eye) {
+  EyeCamera of{camera, eye.frustum};
+  of.camera.position = eye.position, of.camera.orientation = eye.orientation;
+  return of;
+}
+
+// An eye as it follows from the camera, or as it is given.
+EyeCamera eyeAt(const Scene& scene, size_t index, const Looking& looking) {
+  constexpr float kSides[] = {0, -1, 1};
+  if (const std::optional<Eye>& eye = looking.eyes[index]) return cameraOf(looking.camera, *eye);
+  EyeCamera of{eyeOf(looking.camera, kSides[index], scene.ipd)};
+  if (scene.lens && kSides[index] != 0) of.frustum = frustumOf(*scene.lens, kSides[index] < 0);
+  return of;
+}
+
+// The same as a view, or an inset. One that is not given is part of what its eye sees.
+View viewAt(const Scene& scene, const Geometry& geometry, glm::uvec2 size, size_t index,
+            const Looking& looking, const std::optional<glm::uvec2>& inset) {
+  const glm::vec2 gaze = looking.gazes[index];
+  const auto* const found = std::find(std::begin(kInsets), std::end(kInsets), index);
+  if (found == std::end(kInsets)) {
+    const EyeCamera eye = eyeAt(scene, index, looking);
+    return makeView(eye.camera, size, geometry, gaze, eye.frustum);
+  }
+  const glm::uvec2 small = inset.value_or(size);
+  if (const std::optional<Eye>& given = looking.eyes[index]) {
+    const EyeCamera eye = cameraOf(looking.camera, *given);
+    return makeView(eye.camera, small, geometry, gaze, eye.frustum);
+  }
+  const EyeCamera eye = eyeAt(scene, kInsetEyes[found - std::begin(kInsets)], looking);
+  const Frustum outer = frustumOf(makeView(eye.camera, size, geometry, gaze, eye.frustum));
+  const Frustum inner = insetOf(outer, gaze);
+  return makeView(eye.camera, small, geometry, placeIn(inner, outer, gaze), inner);
 }
 
 // Frame::saccade of frame `index` of a sequence, for whichever eye jumped last.
@@ -63,13 +132,19 @@ float saccadeAt(const Scene& scene, uint64_t index, double framesPerSecond) {
   for (uint64_t age = 0; age < std::min<uint64_t>(kSaccadeFrames, index); ++age) {
     const auto now = gazesAt(scene, double(index - age) / framesPerSecond),
                before = gazesAt(scene, double(index - age - 1) / framesPerSecond);
-    for (size_t i = 0; i < kViews; ++i)
+    for (size_t i = 0; i < kInsets[0]; ++i)
       if (glm::distance(now[i], before[i]) > kGazeJump) return 1 - float(age) / float(kSaccadeFrames);
   }
   return 0;
 }
 
 }  // namespace
+
+std::array<glm::vec2, std::size(kViewNames)> gazesAt(const Scene& scene, double time) {
+  const GazeSample gaze = gazeAt(scene.gaze, time, scene.gazeGap);
+  const glm::vec2 left = gaze.left.value_or(gaze.position), right = gaze.right.value_or(gaze.position);
+  return {gaze.position, left, right, left, right};
+}
 
 glm::vec3 View::rayDirection(glm::vec2 p) const {
   const glm::vec2 ndc = 2.0f * p / glm::vec2(size) - 1.0f;  // y down
@@ -143,9 +218,10 @@ size_t viewIndex(std::string_view name) {
   return size_t(found - std::begin(kViewNames));
 }
 
-std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size) {
+std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size, VkExtent2D inset) {
   std::vector<std::pair<std::string, VkExtent2D>> views;
   for (const char* name : kViewNames) views.emplace_back(name, size);
+  for (const size_t view : kInsets) views[view].second = inset;
   return views;
 }
 
@@ -157,6 +233,7 @@ Moment momentAt(const Scene& scene, uint64_t index, double framesPerSecond) {
   m.camera = cameraAt(scene, m.time);
   m.previousCamera = cameraAt(scene, m.before);
   m.gazes = gazesAt(scene, m.time);
+  m.previousGazes = gazesAt(scene, m.before);
   m.saccade = saccadeAt(scene, index, framesPerSecond);
   m.cameraCut = index == 0;
   return m;
@@ -168,7 +245,7 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, u
 }
 
 Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, const Moment& moment,
-                uint32_t seed) {
+                uint32_t seed, const std::optional<glm::uvec2>& inset) {
   Frame f;
   f.index = moment.index;
   f.time = moment.time;
@@ -180,25 +257,13 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, c
   f.lights = lightsAt(scene, f.time);
   f.scene = &scene;
   f.geometry = &geometry;
-  const Camera &camera = moment.camera, &previousCamera = moment.previousCamera;
-  const auto& gazes = moment.gazes;
-  const float sides[] = {0, -1, 1};
   for (size_t i = 0; i < kViews; ++i) {
-    const auto viewOf = [&](Camera of, const std::optional<Eye>& eye) {
-      std::optional<Frustum> frustum;
-      if (eye) {
-        of.position = eye->position, of.orientation = eye->orientation;
-        frustum = eye->frustum;
-      } else {
-        of = eyeOf(of, sides[i], scene.ipd);
-        if (scene.lens && sides[i] != 0) frustum = frustumOf(*scene.lens, sides[i] < 0);
-      }
-      return makeView(of, size, geometry, gazes[i], frustum);
-    };
-    View view = viewOf(camera, moment.eyes[i]);
+    View view = viewAt(scene, geometry, size, i, {moment.camera, moment.eyes, moment.gazes}, inset);
     view.name = kViewNames[i];
-    if (!moment.cameraCut)
-      view.previousWorldToClip = viewOf(previousCamera, moment.previousEyes[i]).worldToClip;
+    if (!moment.cameraCut) {
+      const Looking before{moment.previousCamera, moment.previousEyes, moment.previousGazes};
+      view.previousWorldToClip = viewAt(scene, geometry, size, i, before, inset).worldToClip;
+    }
     f.views.push_back(std::move(view));
   }
   ObjectPoses poses = objectsAt(scene, geometry, f.time, moment.before);

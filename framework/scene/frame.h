@@ -32,11 +32,14 @@ void jitter(View& view, glm::vec2 now, glm::vec2 before);
 glm::vec2 jitterAt(uint64_t index, uint32_t count);
 
 // The views of every frame: the camera, and the two eyes, each half of Scene::ipd to the left or right of the camera,
-// looking in the same direction, and through Scene::lens if the scene has one.
-inline constexpr const char* kViewNames[] = {"main", "left", "right"};
+// looking in the same direction, and through Scene::lens if the scene has one; and an inset in the picture of each eye,
+// with half of its field each way, around the gaze, but within that picture.
+inline constexpr const char* kViewNames[] = {"main", "left", "right", "left_inset", "right_inset"};
+inline constexpr size_t kInsets[] = {3, 4};  // of these, and the eyes in whose pictures they lie
+inline constexpr size_t kInsetEyes[] = {1, 2};
 
-// These views, each with the size of the picture, for binding a graph.
-std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size);
+// These views with the size of the picture, or of the inset, in pixels, for binding a graph.
+std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size, VkExtent2D inset);
 
 // Index in kViewNames. Throws Error(Internal) for another name.
 size_t viewIndex(std::string_view name);
@@ -54,21 +57,26 @@ using Eyes = std::array<std::optional<Eye>, std::size(kViewNames)>;
 // Frames until Frame::saccade is 0 again.
 inline constexpr uint32_t kSaccadeFrames = 8;
 
+// Where each view's eye looks at `time`, by the scene; of insets, in the picture around them.
+std::array<glm::vec2, std::size(kViewNames)> gazesAt(const Scene& scene, double time);
+
 // The time, cameras and gaze of a frame. Those of a sequence follow from the scene; an interactive viewer changes them.
 struct Moment {
   uint64_t index = 0;           // Frame::index
   double time = 0, before = 0;  // of this frame and of the last one, in seconds
   Camera camera, previousCamera;
   Eyes eyes, previousEyes;
-  std::array<glm::vec2, std::size(kViewNames)> gazes{};  // of each view
-  float saccade = 0;                                     // Frame::saccade
+  std::array<glm::vec2, std::size(kViewNames)> gazes{}, previousGazes{};  // of each view
+  float saccade = 0;                                                      // Frame::saccade
   bool cameraCut = false;
 };
 // Frame `index` of a sequence at `framesPerSecond`.
 Moment momentAt(const Scene& scene, uint64_t index, double framesPerSecond);
 
+// size: of the pictures in pixels, also of insets unless their own is given. The gaze of an inset whose eye is not given
+// is that of the picture around it; insets then follow it.
 Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, const Moment& moment,
-                uint32_t seed);
+                uint32_t seed, const std::optional<glm::uvec2>& inset = {});
 // Camera, eyes, gaze, lights and objects at frame `index` of a sequence at `framesPerSecond`; the paper's rate is 42
 // Hz. The geometry is not changed: moveObjects() brings it to the frame.
 Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, uint64_t index, uint32_t seed,

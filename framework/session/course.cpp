@@ -18,13 +18,13 @@ scene::Moment Course::next(const scene::Scene& scene, uint64_t index, const Stee
   m.eyes = steering.eyes;
   m.previousEyes = anew ? m.eyes : shown_.eyes;
   m.cameraCut = anew;
-  const scene::GazeSample own = scene::gazeAt(scene.gaze, m.time, scene.gazeGap);
-  m.gazes = {own.position, own.left.value_or(own.position), own.right.value_or(own.position)};
+  m.gazes = scene::gazesAt(scene, m.time);
   for (size_t i = 0; i < m.gazes.size(); ++i)
     m.gazes[i] = steering.gazes[i].value_or(steering.gaze.value_or(m.gazes[i]));
+  m.previousGazes = anew ? m.gazes : shown_.gazes;
   // As scene::momentAt() has it, from the frames as they were shown.
   bool jumped = false;
-  for (size_t i = 0; i < m.gazes.size() && !anew; ++i)
+  for (size_t i = 0; i < scene::kInsets[0] && !anew; ++i)
     jumped |= glm::distance(m.gazes[i], shown_.gazes[i]) > scene::kGazeJump;
   sinceJump_ = jumped ? 0 : anew ? scene::kSaccadeFrames : std::min(sinceJump_ + 1, scene::kSaccadeFrames);
   m.saccade = 1 - float(sinceJump_) / float(scene::kSaccadeFrames);

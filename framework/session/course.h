@@ -16,7 +16,7 @@ struct Steering {
   scene::Eyes eyes{};                   // those that are not set follow from the camera
   std::optional<glm::vec2> gaze;        // of all views; not set: the scene's
   std::array<std::optional<glm::vec2>, std::size(scene::kViewNames)> gazes{};  // of single views, instead
-  bool cut = false;                     // Frame::cameraCut
+  bool cut = false;                                                            // Frame::cameraCut
 };
 
 class Course {

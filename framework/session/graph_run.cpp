@@ -15,10 +15,12 @@ bool raysOnHost(RaysOn rays, const gpu::Device* device) {
 }
 
 graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene,
-                                    const scene::Geometry& geometry, glm::uvec2 size, RaysOn rays) {
+                                    const scene::Geometry& geometry, glm::uvec2 size, RaysOn rays,
+                                    const std::optional<glm::uvec2>& inset) {
   graph::Environment environment = graph::deviceEnvironment(device);
   environment.raysOnHost = raysOnHost(rays, device);
-  environment.views = scene::frameViews({size.x, size.y});
+  const glm::uvec2 small = inset.value_or(size);
+  environment.views = scene::frameViews({size.x, size.y}, {small.x, small.y});
   environment.quantities = scene::quantities(scene, geometry);
   environment.texts.emplace_back("scene.materials", scene.fullMaterials ? "full" : "diffuse");
   environment.texts.emplace_back("scene.environment", scene.environmentMap ? "map" : "none");
@@ -82,8 +84,9 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
                 fmt::format("a picture of {}x{} pixels exceeds this device's largest image of {} a side",
                             size.x, size.y, limit),
                 "render a smaller picture");
-  graph::BoundGraph made =
-      graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size, options_.rays), messages);
+  graph::BoundGraph made = graph::bind(
+      description, sceneEnvironment(&device_, scene_, geometry_, size, options_.rays, options_.inset),
+      messages);
   graph::replaceFormats(device_, made);
   graph::shareWithHost(device_, made);
   for (graph::BoundResource& resource : made.resources) resource.observable = options_.observable;
@@ -120,7 +123,7 @@ scene::Frame GraphRun::frame(uint64_t index) const {
 
 scene::Frame GraphRun::frame(const scene::Moment& moment) const {
   const uint64_t index = moment.index;
-  scene::Frame f = scene::makeFrame(scene_, geometry_, options_.size, moment, options_.seed);
+  scene::Frame f = scene::makeFrame(scene_, geometry_, options_.size, moment, options_.seed, options_.inset);
   f.gpu = gpuScene_.get();
   const graph::Parameters& set = graph().view;
   const float angle = glm::radians(float(set.real("fovea_degrees")));
@@ -131,8 +134,14 @@ scene::Frame GraphRun::frame(const scene::Moment& moment) const {
     view.foveaRadius =
         angle > 0 ? scene::foveaRadiusOfAngle(angle, view.viewToClip) : float(set.real("fovea_radius"));
     view.pixelsPerDegree = float(set.real("pixels_per_degree"));
-    scene::jitter(view, now, before);
   }
+  // The fovea of an inset is that of the picture around it, which is wider.
+  for (size_t i = 0; i < std::size(scene::kInsets) && !(angle > 0); ++i) {
+    scene::View& inset = f.views[scene::kInsets[i]];
+    const scene::View& around = f.views[scene::kInsetEyes[i]];
+    inset.foveaRadius *= inset.viewToClip[0][0] / around.viewToClip[0][0];
+  }
+  for (scene::View& view : f.views) scene::jitter(view, now, before);
   return f;
 }
 

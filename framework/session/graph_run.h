@@ -5,6 +5,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,7 +32,7 @@ bool raysOnHost(RaysOn rays, const gpu::Device* device);
 // nullptr) and the scene's quantities and texts.
 graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene,
                                     const scene::Geometry& geometry, glm::uvec2 size,
-                                    RaysOn rays = RaysOn::Auto);
+                                    RaysOn rays = RaysOn::Auto, const std::optional<glm::uvec2>& inset = {});
 
 // The value of a parameter such as tonemap's `exposure`, or `otherwise` if no pass of the graph has it. If several passes
 // have it, the last one decides.
@@ -44,6 +45,7 @@ class GraphRun {
  public:
   struct Options {
     glm::uvec2 size{0};
+    std::optional<glm::uvec2> inset{};  // of insets in the pictures of eyes; not set: `size`
     uint32_t seed = 1;
     double frameRate = 42;
     // Chooses the graph outputs to read back.

@@ -1,6 +1,7 @@
 #include "framework/session/timings.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -74,6 +75,12 @@ bool sameShape(const graph::FrameResult& a, const graph::FrameResult& b) {
 }
 
 }  // namespace
+
+uint64_t peakHostBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return uint64_t(usage.ru_maxrss) * 1024;
+}
 
 Spread spreadOf(std::vector<double> values) {
   if (values.empty()) return {};

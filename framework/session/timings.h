@@ -22,6 +22,9 @@ struct RunInfo {
   uint64_t peakDeviceBytes = 0, peakHostBytes = 0;
 };
 
+// Of this process, so far.
+uint64_t peakHostBytes();
+
 // In milliseconds. p95 is the nearest rank: the smallest value that at least 95% of the frames do not exceed.
 struct Spread {
   double median = 0, min = 0, p95 = 0;

@@ -1,6 +1,5 @@
 // The command `fovea render`: runs a graph over a scene and writes pictures, times and traces.
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <memory>
 #include <optional>
@@ -36,8 +35,8 @@ constexpr double kSlowFrameMs = 500;
 
 struct RenderOptions {
   GraphOptions graph;
-  std::string scene, environment, size = "1024x1024", gaze, gazeTrace, headTrace, lens, device, timings,
-                                  trace;
+  std::string scene, environment, size = "1024x1024", inset, gaze, gazeTrace, headTrace, lens, device,
+                                  timings, trace;
   double gazeGapMs = 1000 * scene::kGazeGap, frameLimit = kFrameLimit;
   std::vector<std::string> outputs, without;
   uint32_t first = 0, frames = 1, warmup = 0, seed = 1;
@@ -49,12 +48,6 @@ void stopIfInterrupted() {
   if (interrupted())
     throw Error(ExitCode::Interrupted, "interrupted before the first frame was finished",
                 "nothing was written");
-}
-
-uint64_t peakHostBytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return uint64_t(usage.ru_maxrss) * 1024;
 }
 
 // One run of the command, stage by stage.
@@ -213,6 +206,7 @@ void Render::buildPlan() {
   openDevice();
   session::GraphRun::Options run;
   run.size = size_;
+  if (!options_.inset.empty()) run.inset = parseSize(options_.inset);
   run.seed = options_.seed;
   run.rays = options_.graph.rays;
   run.readback = [this](const graph::BoundGraph& graph) { return outputs_->outputsOf(graph, size_); };
@@ -343,7 +337,7 @@ void Render::writeResults() {
   if (picture_) outputs_->writeLast(*picture_, metadata(picture_->frame));
   picture_.reset();
   info_.peakDeviceBytes = device_->peakAllocatedBytes();
-  info_.peakHostBytes = peakHostBytes();
+  info_.peakHostBytes = session::peakHostBytes();
   if (!options_.timings.empty()) {
     timings_->write(options_.timings, info_);
     files_.push_back(options_.timings);
@@ -438,6 +432,10 @@ void addRender(CLI::App& program, Action& action) {
   addEnvironmentOption(*command, options->environment);
   addOutputOptions(*command, *options);
   command->add_option("--size", options->size, "Picture size, 1 to 16384 pixels a side; default 1024x1024")
+      ->type_name("WxH");
+  command
+      ->add_option("--inset", options->inset,
+                   "Size of the insets of graphs that have any (foveal_quad); default: that of --size")
       ->type_name("WxH");
   command->add_option("--frames", options->frames, "Frames to render and measure; default 1")
       ->type_name("N")

@@ -280,7 +280,7 @@ TEST(Frame, EyesAreHalfTheirDistanceFromTheCamera) {
   s.gaze = {{0, {0.25f, 0.5f}, true, glm::vec2(0.3f, 0.5f), std::nullopt}};
   const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
   const Frame before = makeFrame(s, g, {64, 64}, 14, 0, 10.0), f = makeFrame(s, g, {64, 64}, 15, 0, 10.0);
-  ASSERT_EQ(f.views.size(), 3u);
+  ASSERT_EQ(f.views.size(), 5u);
   EXPECT_EQ(f.views[0].name, "main");
   const glm::mat3 axes = glm::transpose(glm::mat3(f.views[0].worldToView));
   EXPECT_LT(glm::distance(f.findView("left")->eye, f.views[0].eye - 0.05f * axes[0]), 1e-6f);
@@ -306,6 +306,82 @@ TEST(Frame, OnlyTheEyesLookThroughTheLens) {
   EXPECT_NE(f.findView("left")->viewToClip[2][0], 0);
   for (const View& v : f.views)
     EXPECT_EQ(v.previousWorldToClip, last.findView(v.name)->worldToClip) << v.name;
+}
+
+// A moment in which a camera looks along -Z through eyes with the field of view of a headset.
+struct Wearing {
+  Scene scene;
+  Geometry geometry = bounds(glm::vec3(-5), glm::vec3(5));
+  Moment moment;
+  Wearing() {
+    scene.lens = Lens{0.9f, 0.7f, 0.8f, 0.6f};
+    scene.cameras.emplace_back();
+    moment = momentAt(scene, 3, 90);
+  }
+  View view(const char* name, const std::optional<glm::uvec2>& inset = {}) const {
+    return *makeFrame(scene, geometry, {60, 40}, moment, 1, inset).findView(name);
+  }
+};
+
+TEST(Frame, EyesOfADisplayTakeThePlaceOfTheCameras) {
+  Wearing w;
+  const View left = w.view("left"), right = w.view("right");
+  const size_t index = viewIndex("left");
+  const Eye same{left.eye, glm::quat(1, 0, 0, 0), frustumOf(*w.scene.lens, true)};
+  w.moment.eyes[index] = w.moment.previousEyes[index] = same;
+  EXPECT_EQ(w.view("left").worldToClip, left.worldToClip);
+  EXPECT_EQ(w.view("left").previousWorldToClip, left.previousWorldToClip);
+  Eye moved = same;
+  moved.position.y += 0.3f;
+  moved.orientation = glm::angleAxis(0.2f, glm::vec3(0, 1, 0));
+  w.moment.eyes[index] = moved;
+  const View now = w.view("left");
+  EXPECT_EQ(now.eye, moved.position);
+  EXPECT_EQ(now.previousWorldToClip, left.worldToClip);  // where the eye was
+  EXPECT_NE(now.worldToClip, left.worldToClip);
+  EXPECT_EQ(w.view("right").worldToClip, right.worldToClip);
+  EXPECT_EQ(w.view("main").eye, glm::vec3(0));
+  EXPECT_THROW(viewIndex("middle"), Error);
+}
+
+TEST(Frame, InsetsShowHalfOfTheFieldAroundTheGaze) {
+  Wearing w;
+  for (const glm::vec2 gaze : {glm::vec2(0.5f), glm::vec2(0.6f, 0.35f), glm::vec2(0.02f, 0.97f)}) {
+    w.moment.gazes.fill(gaze);
+    for (const char* name : {"left", "right"}) {
+      const View eye = w.view(name),
+                 inset = w.view((std::string(name) + "_inset").c_str(), glm::uvec2(50, 30));
+      EXPECT_EQ(inset.size, glm::uvec2(50, 30));
+      EXPECT_EQ(inset.eye, eye.eye);
+      EXPECT_NEAR(inset.viewToClip[0][0], 2 * eye.viewToClip[0][0], 1e-5f);
+      EXPECT_NEAR(inset.viewToClip[1][1], 2 * eye.viewToClip[1][1], 1e-5f);
+      // The same line of sight, and nothing that the eye does not show.
+      const auto along = [](const View& v, glm::vec2 place) {
+        return glm::normalize(v.rayDirection(place * glm::vec2(v.size)));
+      };
+      EXPECT_LT(glm::distance(along(inset, inset.gaze), along(eye, eye.gaze)), 1e-5f) << name << gaze.x;
+      for (const glm::vec2 corner : {glm::vec2(0), glm::vec2(1)}) {
+        const glm::vec3 seen = project(eye, eye.eye + along(inset, corner));
+        EXPECT_LE(std::max(std::abs(seen.x), std::abs(seen.y)), 1 + 1e-4f);
+      }
+    }
+  }
+  EXPECT_EQ(w.view("left_inset").size, glm::uvec2(60, 40));
+}
+
+TEST(Frame, InsetsFollowTheGazeFromTheLastFrame) {
+  Wearing w;
+  w.moment.gazes.fill(glm::vec2(0.6f));
+  w.moment.previousGazes.fill(glm::vec2(0.4f));
+  const View now = w.view("left_inset");
+  w.moment.gazes.fill(glm::vec2(0.4f));
+  EXPECT_EQ(now.previousWorldToClip, w.view("left_inset").worldToClip);
+  EXPECT_NE(now.previousWorldToClip, now.worldToClip);
+  const size_t index = viewIndex("left_inset");
+  w.moment.eyes[index] = Eye{glm::vec3(1), glm::quat(1, 0, 0, 0), {0.3f, 0.3f, 0.2f, 0.2f}};
+  w.moment.gazes[index] = {0.1f, 0.2f};
+  EXPECT_EQ(w.view("left_inset").eye, glm::vec3(1));
+  EXPECT_EQ(w.view("left_inset").gaze, glm::vec2(0.1f, 0.2f));  // of a given one, in its own picture
 }
 
 TEST(Frame, FindsViewsByName) {

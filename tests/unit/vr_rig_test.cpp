@@ -124,5 +124,19 @@ TEST(VrRig, ALostGazeStaysAndThenReturnsToTheMiddle) {
   EXPECT_NEAR(gazeOf(rig.steer(tracked, 1.01 + kGazeHold), "right").x, 0.5f, 1e-5);
 }
 
+TEST(VrRig, InsetsHaveEyesAndGazesOfTheirOwn) {
+  Rig rig(cameraAt({0, 0, 0}, 0), {});
+  Tracked tracked = lookingAhead();
+  for (int i = 0; i < 2; ++i) {
+    tracked.eyes.push_back(tracked.eyes[i]);
+    tracked.frusta.push_back({0.5f, 0.5f, 0.5f, 0.5f});
+  }
+  tracked.gaze = glm::normalize(glm::vec3(0.25f, 0, -1));
+  const session::Steering steering = rig.steer(tracked, 0);
+  EXPECT_NEAR(gazeOf(steering, "left").x, 0.625f, 1e-6);
+  EXPECT_NEAR(gazeOf(steering, "left_inset").x, 0.75f, 1e-6);
+  EXPECT_EQ(eyeOf(steering, "right_inset").frustum.up, 0.5f);
+}
+
 }  // namespace
 }  // namespace fovea::vr

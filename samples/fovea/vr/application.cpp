@@ -78,6 +78,7 @@ void Application::build() {
                              .maker = runtime_->deviceMaker()});
   session::GraphRun::Options run;
   run.size = size_;
+  run.inset = insetSize_;
   run.seed = options_.seed;
   run.rays = options_.graph.rays;
   run_ = std::make_unique<session::GraphRun>(*device_, description_, scene_, geometry_, std::move(run),
@@ -187,15 +188,17 @@ void Application::report() {
   if (!options_.log.empty()) log_.write(options_.log);
   if (!options_.record.empty()) writeText(options_.record, session::headTraceTable(recorded_));
   if (!options_.timings.empty()) {
-    session::RunInfo info{device_->name(),
-                          description_.name,
-                          session::formatHash(run_->graph().hash),
-                          scene_.name,
-                          size_.x,
-                          size_.y,
-                          0,
-                          options_.seed,
-                          device_->peakAllocatedBytes()};
+    const session::RunInfo info = {
+        .device = device_->name(),
+        .graph = description_.name,
+        .graphHash = session::formatHash(run_->graph().hash),
+        .scene = scene_.name,
+        .width = size_.x,
+        .height = size_.y,
+        .seed = options_.seed,
+        .peakDeviceBytes = device_->peakAllocatedBytes(),
+        .peakHostBytes = session::peakHostBytes(),
+    };
     timings_->write(options_.timings, info);
   }
   for (const std::string& file : {options_.record, options_.log, options_.timings})
