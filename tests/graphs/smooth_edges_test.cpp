@@ -195,5 +195,58 @@ TEST(SmoothEdges, StillPicturesDoNotFlicker) {
   EXPECT_LT(most, 0.1);
 }
 
+// The mean over the values of exposure * radiance / radiance of pixels that are neither dark nor clamped.
+double exposureOf(const std::vector<float>& image, const std::vector<float>& radiance) {
+  double shown = 0, light = 0;
+  for (size_t i = 0; i < image.size(); ++i) {
+    if (i % 4 == 3 || image[i] < 0.3f || image[i] > 0.95f) continue;
+    shown += linear(image[i]), light += double(radiance[i]);
+  }
+  return shown / light;
+}
+
+// `foveal_stereo_view`: the left eye is that of `foveal_view`, the right one is as smooth, and both have one exposure.
+TEST(SmoothEdges, OfBothEyes) {
+  const scene::Scene s = pillars();
+  GraphRunOptions o = viewOptions(kSide, 24);
+  o.outputs = {"image", "radiance", "image_right", "radiance_right"};
+  o.set.push_back("right/tonemap.operator=clamp");
+  const GraphRun both = runGraph("foveal_stereo_view", s, o);
+  const auto look = [](const char* view) {
+    return [view](scene::Frame& frame) {
+      frame.views[0] = *frame.findView(view);
+      frame.views[0].name = "main";
+    };
+  };
+  GraphRunOptions one = viewOptions(kSide, 24);
+  one.beforeFrame = look("left");
+  EXPECT_EQ(both.outputs.at("image").bytes, runGraph("foveal_view", s, one).outputs.at("image").bytes);
+
+  double error[2] = {};
+  for (const bool right : {false, true}) {
+    GraphRunOptions traced = options(kFine * kSide, 1);
+    traced.set = {"spp=16"};
+    traced.beforeFrame = look(right ? "right" : "left");
+    std::vector<float> range;
+    const std::vector<float> exact = shrunk(toFloats(runGraph("reference", s, traced).outputs.at("image")),
+                                            range),
+                             image = toFloats(both.outputs.at(right ? "image_right" : "image"));
+    int count = 0;
+    for (size_t i = 0; i < exact.size(); ++i) {
+      if (i % 4 == 3 || range[i] <= 0.15f) continue;
+      ++count;
+      error[right] += std::pow(double(image[i] - exact[i]), 2);
+    }
+    ASSERT_GT(count, 300);
+    error[right] /= count;
+  }
+  std::printf("MSE x 1000 at edges: left %.3f, right %.3f\n", 1000 * error[0], 1000 * error[1]);
+  EXPECT_LT(error[1], 1.25 * error[0]);
+  const double left = exposureOf(toFloats(both.outputs.at("image")), toFloats(both.outputs.at("radiance"))),
+               right = exposureOf(toFloats(both.outputs.at("image_right")),
+                                  toFloats(both.outputs.at("radiance_right")));
+  EXPECT_NEAR(right / left, 1, 0.01);
+}
+
 }  // namespace
 }  // namespace fovea::test
