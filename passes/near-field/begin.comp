@@ -1,4 +1,5 @@
-// What the rays of this frame need to know. Define: CHANGE 0/1, whether the input `change` is wired.
+// What the rays of this frame need to know. Defines: CHANGE and GIVEN_AREA 0/1, whether the inputs `change` and
+// `least_area` are wired.
 #include "records/near_field.h"
 #include "scene/scene.glsl"
 
@@ -6,6 +7,9 @@ layout(local_size_x = 1) in;
 
 #if CHANGE
 layout(std430) readonly buffer ChangeBlock { vec4 list[]; } change;
+#endif
+#if GIVEN_AREA
+layout(std430) readonly buffer LeastAreaBlock { vec4 list[]; } leastArea;
 #endif
 layout(std430) buffer StateBlock { NearFieldState value; } state;
 layout(std430) writeonly buffer SumsBlock { NearFieldSums value; } sums;
@@ -30,7 +34,12 @@ void main() {
   // The diagonal stands for the mean length as long as no surface sees another: light of the environment is found
   // all the same.
   float known = state.value.meanLength > 0.0 ? state.value.meanLength : diagonal();
-  state.value.area = onlyLength != 0u ? 0.0 : share * known * known / float(vpls);
+#if GIVEN_AREA
+  float area = leastArea.list[0].x;
+#else
+  float area = share * known * known / float(vpls);
+#endif
+  state.value.area = onlyLength != 0u ? 0.0 : area;
   state.value.cellWidth = kNearCellWidth * known;
   state.value.ageing = changed.y;
   float lost = saccade > 0.0 ? 1.0 : changed.z;

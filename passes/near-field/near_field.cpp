@@ -21,6 +21,10 @@ void declarePorts(PassDeclaration& d) {
   d.input("gbuffer", "gbuffer", gbufferMembers(read, {"normal", "specular"}),
           "surfaces seen by the eye, whose lobes `gloss` is for; if not wired, it is the same as `samples`")
       .when(fullMaterials());
+  d.input(
+       "least_area", spreadBuffer(), read,
+       "`spread` of another view that has the same VPLs; if not wired, it follows from the rays of this one")
+      .makeOptional();
   const SizeExpr width = ceilDiv(viewWidth(), 2), height = ceilDiv(viewHeight(), 2);
   d.output("samples", ofLight(image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height)), write,
            "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2 block, or of each `spacing` x "
@@ -142,6 +146,7 @@ class NearField : public Pass {
     };
     d.step("near-field/begin.comp")
         .define("CHANGE", wired("change"))
+        .define("GIVEN_AREA", wired("least_area"))
         .constant("share", [](const RecordContext& ctx) { return float(ctx.parameters().real("share")); })
         .constant("saccade", [](const RecordContext& ctx) { return ctx.frame().saccade; })
         .constant("isFirst", [](const RecordContext& ctx) { return uint32_t(ctx.firstFrame()); });

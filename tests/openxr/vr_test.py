@@ -80,28 +80,42 @@ class VrTest(CliTest):
 
 
 class VrPictures(VrTest):
-    def replayed(self, graph):
+    def replayed(self, graph, walk=WALK, outputs=("image", "image_right"), more=()):
         """What the headset was shown is what `render` makes of the recording, to the bit."""
-        self.vr(WALK, "--frames", "8", "--record", "walk.csv", "--log", "frames.csv", graph=graph)
+        self.vr(walk, "--frames", "8", "--record", "walk.csv", "--log", "frames.csv", graph=graph)
         self.assertEqual(len(self.shown()), 8)
-        self.succeeds("render", graph, "--scene", "cornellbox", "--size", "48x32", "--head-trace", "walk.csv", "--frames",
-                      "8", "-o", "image=left_%d.png", "-o", "image_right=right_%d.png", "--quiet")
+        files = [argument for output in outputs for argument in ("-o", f"{output}={output}_%d.png")]
+        self.succeeds("render", graph, "--scene", "cornellbox", "--size", "48x32", *more, "--head-trace", "walk.csv",
+                      "--frames", "8", *files, "--quiet")
         different = set()
         for frame in range(8):
-            for view, name in enumerate(("left", "right")):
+            for view, name in enumerate(outputs):
                 shown = (self.folder / f"out/frame_{frame:05d}_view{view}.ppm").read_bytes()
                 ppm = self.folder / f"{name}_{frame}.ppm"
                 subprocess.run(["oiiotool", f"{name}_{frame}.png", "--ch", "R,G,B", "-o", ppm.name], cwd=self.folder,
                                check=True, capture_output=True)
                 self.assertEqual(shown, ppm.read_bytes(), f"{graph} {name} {frame}")
                 different.add(shown)
-        self.assertEqual(len(different), 16)  # nothing stands still
+        self.assertEqual(len(different), 8 * len(outputs))  # nothing stands still
 
     def test_stereo(self):
         self.replayed("stereo")
 
     def test_foveal_stereo(self):
         self.replayed("foveal_stereo")
+
+    def test_foveal_stereo_view(self):
+        self.replayed("foveal_stereo_view")
+
+    def test_foveal_quad(self):
+        """Insets with other sizes and fields than the pictures around them."""
+        insets = [{**eye, "size": [40, 28], "fov": [-0.4, 0.35, 0.3, -0.3]} for eye in WALK["views"]]
+        self.replayed("foveal_quad", {**WALK, "views": WALK["views"] + insets},
+                      ("image", "image_right", "image_inset", "image_right_inset"), ("--inset", "40x28"))
+
+    def test_graphs_for_other_displays(self):
+        self.assertIn("no insets", self.vr({}, graph="foveal_quad", code=NO_DEVICE).stderr)
+        self.assertIn("two eyes", self.vr({"views": 2 * EYES}, graph="stereo", code=NO_DEVICE).stderr)
 
     def test_gaze(self):
         self.vr(WALK, "--frames", "8", "--log", "frames.csv")

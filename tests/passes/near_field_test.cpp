@@ -238,6 +238,20 @@ TEST(NearFieldLight, DiscsAreAsLargeAsDistancesSay) {
 }
 
 // One sample for 2 x 2 pixels in the fovea and for a tile outside it; none where the pixel shows the background.
+// Of two views with the same VPLs, one says how large their discs are.
+TEST_P(NearField, TakesTheAreaOfAnotherView) {
+  const scene::Scene s = emissiveRoom(true);
+  NearFieldTest first(s, glm::uvec2(8), GetParam()), second(s, glm::uvec2(8), GetParam()),
+      other(s, glm::uvec2(8), GetParam());
+  for (NearFieldTest* test : {&first, &second, &other})
+    test->param("vpls", 1).param("share", test == &first ? 0.1 : 10.0);
+  const std::vector<glm::vec4> samples = first.samples();
+  second.buffer("least_area", std::vector<glm::vec4>{{first.area(), 0, 0, 0}}, "VplSpread");
+  EXPECT_EQ(second.samples(), samples);
+  EXPECT_EQ(second.area(), first.area());
+  EXPECT_NE(other.samples(), samples);
+}
+
 TEST_P(NearField, SamplesWhereTheEyeLooks) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f));
