@@ -6,6 +6,7 @@ pyoidn.
 
 import importlib.util
 import json
+import pathlib
 import sys
 import unittest
 
@@ -60,8 +61,8 @@ class Recovery(ToolTest):
     def test_changes_are_seen(self):
         """A method that keeps nothing is as good as ever at once; one that adds up all frames remembers."""
         scene = self.write("scene.json", SCENE)
-        graphs = [str(self.write(f"small_{graph}.json", {"extends": f"{graph}.json", "parameters": {"vpl_count": 64}}))
-                  for graph in ("ir_fixed_seed", "ir_accumulated")]
+        graphs = [str(self.write(f"small_{pathlib.Path(graph).stem}.json", {"extends": f"{graph}.json", "parameters": {"vpl_count": 64}}))
+                  for graph in ("ir_fixed_seed", "debug/ir_accumulated")]
         self.succeeds(scene, "--change", 10, "--graphs", ",".join(graphs), "--before", 4, "--frames", 3, "--seeds", 2,
                       "--size", "32x32", "--spp", 16, "--fovea", PROGRAM, "--json", self.folder / "a.json")
         forgets, remembers = json.loads((self.folder / "a.json").read_text())["methods"]

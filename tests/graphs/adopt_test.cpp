@@ -62,7 +62,7 @@ TEST_P(Adopt, WhatIsUntouchedGoesOn) {
     EXPECT_EQ(edited.frame(), plain.frame()) << "round " << round;
   }
 }
-INSTANTIATE_TEST_SUITE_P(Graphs, Adopt, testing::Values("ours", "ir_accumulated", "foveal"));
+INSTANTIATE_TEST_SUITE_P(Graphs, Adopt, testing::Values("ours", "debug/ir_accumulated", "foveal"));
 
 TEST(AdoptNot, ARestartBeginsAnew) {
   Edited edited, plain;

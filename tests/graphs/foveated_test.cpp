@@ -282,7 +282,7 @@ TEST(LongFoveated, EyePathsWeighedByDensityCarryTheLightOfTracedPaths) {
   for (const EnergyScene& e : energyScenes()) {
     const auto traced = tracedIndirect(e.scene, kEnergySize, 1, 64);
     const auto found =
-        indirectOf("ir_v_accumulated", e.scene,
+        indirectOf("debug/ir_v_accumulated", e.scene,
                    {"terms=direct", "intensity=pdf", "kernel=clamp", "clamp_distance=0.1"}, 16);
     const double want = meanOf(traced, kEnergySize, {0.5f, 0.5f}, 4, true);
     const double got = meanOf(found, kEnergySize, {0.5f, 0.5f}, 4, true);

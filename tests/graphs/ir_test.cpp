@@ -32,7 +32,7 @@ TEST(InstantRadiosity, FurnaceIsEvenlyLitByItsBounces) {
   for (const int bounces : {1, 2, 4}) {
     // Enough paths for their mean number of bounces to be within 1% or so.
     const GraphRun run = runIr(
-        "ir_accumulated", s, {"vpl_count=1024", "kernel=clamp", "bounces=" + std::to_string(bounces)}, 64, 4);
+        "debug/ir_accumulated", s, {"vpl_count=1024", "kernel=clamp", "bounces=" + std::to_string(bounces)}, 64, 4);
     const double expected = litSphereRadiance(kRho, bounces);
     const auto indirect = toFloats(run.outputs.at("indirect"));
     double mean = 0;
@@ -84,7 +84,7 @@ TEST(InstantRadiosity, AccumulatedFramesApproachTracedPaths) {
   // The camera is off the axis, where pixel centres would fall exactly on the seams of the room and no ray could start.
   s.cameras[0].position += glm::vec3(0.037f, 0.021f, 0);
   const GraphRun run = runIr(
-      "ir_accumulated", s,
+      "debug/ir_accumulated", s,
       {"vpl_count=1000", "kernel=clamp", "clamp_distance=0", "interleave=1", "shadow_map_size=512"}, 48, 6);
   const std::vector<float> indirect = toFloats(run.outputs.at("indirect"));
   const Comparison c = compare(indirect, s, 48, 400);
