@@ -17,12 +17,14 @@ class Repetition {
       const json::Value* before = inherited.find(member.key);
       if (!before || isOfTheFile(path, member.key)) continue;
       const std::string memberPath = json::joinPath(path, member.key);
-      if (member.value.isObject() && before->isObject())
-        compare(member.value, *before, memberPath);
-      else if (json::print(member.value) == json::print(*before))
+      if (member.value.isObject() && before->isObject()) {
+        const bool another = path == "passes" && detail::replacesWhole(*before, member.value);
+        if (!another) compare(member.value, *before, memberPath);
+      } else if (json::print(member.value) == json::print(*before)) {
         diagnostics_.warning(member.keyWhere.location(), memberPath,
                              fmt::format("`{}` is {} without this", member.key, member.value.describe()),
                              "leave it out");
+      }
     }
   }
 

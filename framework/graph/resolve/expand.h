@@ -45,6 +45,8 @@ struct Scope {
 // JSON.
 inline constexpr uint64_t kMaxGraphBytes = uint64_t(8) << 20;  // kMaxPasses of 800 bytes each
 json::Value readGraphFile(const std::filesystem::path& file, Diagnostics& diagnostics);
+// Whether the patch turns the pass into one of another kind, in which case no old setting may remain.
+bool replacesWhole(const json::Value& base, const json::Value& patch);
 // What to do where no file of this name is found beside `from` or in the search paths.
 std::string graphFileRemedy(const std::string& name, const std::filesystem::path& from,
                             const std::vector<std::filesystem::path>& searchPaths);

@@ -8,12 +8,8 @@
 #include "framework/graph/resolve/expand.h"
 
 namespace fovea::graph {
-namespace {
 
-using json::Member;
-
-// Whether the patch turns the pass into one of another kind, in which case no old setting may remain.
-bool replacesWhole(const json::Value& base, const json::Value& patch) {
+bool detail::replacesWhole(const json::Value& base, const json::Value& patch) {
   for (const char* key : {"type", "graph"}) {
     const json::Value* now = patch.find(key);
     if (!now || now->isNull()) continue;
@@ -22,6 +18,10 @@ bool replacesWhole(const json::Value& base, const json::Value& patch) {
   }
   return false;
 }
+
+namespace {
+
+using json::Member;
 
 class Merger {
  public:
@@ -37,7 +37,7 @@ class Merger {
       base = patch;
       return;
     }
-    if (!base.isObject() || (inPasses && depth == 2 && replacesWhole(base, patch))) {
+    if (!base.isObject() || (inPasses && depth == 2 && detail::replacesWhole(base, patch))) {
       if (removals_)
         std::erase_if(*removals_,
                       [&](const Removal& removal) { return removal.path.starts_with(path + "."); });
