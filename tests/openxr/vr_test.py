@@ -82,13 +82,13 @@ class VrTest(CliTest):
 class VrPictures(VrTest):
     def replayed(self, graph, walk=WALK, outputs=("image", "image_right"), more=()):
         """What the headset was shown is what `render` makes of the recording, to the bit."""
-        self.vr(walk, "--frames", "8", "--record", "walk.csv", "--log", "frames.csv", graph=graph)
-        self.assertEqual(len(self.shown()), 8)
+        self.vr(walk, "--frames", "6", "--record", "walk.csv", "--log", "frames.csv", graph=graph)
+        self.assertEqual(len(self.shown()), 6)
         files = [argument for output in outputs for argument in ("-o", f"{output}={output}_%d.png")]
         self.succeeds("render", graph, "--scene", "cornellbox", "--size", "48x32", *more, "--head-trace", "walk.csv",
-                      "--frames", "8", *files, "--quiet")
+                      "--frames", "6", *files, "--quiet")
         different = set()
-        for frame in range(8):
+        for frame in range(6):
             for view, name in enumerate(outputs):
                 shown = (self.folder / f"out/frame_{frame:05d}_view{view}.ppm").read_bytes()
                 ppm = self.folder / f"{name}_{frame}.ppm"
@@ -96,7 +96,7 @@ class VrPictures(VrTest):
                                check=True, capture_output=True)
                 self.assertEqual(shown, ppm.read_bytes(), f"{graph} {name} {frame}")
                 different.add(shown)
-        self.assertEqual(len(different), 8 * len(outputs))  # nothing stands still
+        self.assertEqual(len(different), 6 * len(outputs))  # nothing stands still
 
     def test_stereo(self):
         self.replayed("stereo")
@@ -201,6 +201,9 @@ class VrFaults(VrTest):
         self.assertIn("foveal_stereo", self.vr({}, graph="direct", code=USAGE).stderr)
         self.vr({}, "--set", "nothing=1", code=BAD_INPUT)
         self.vr({}, "--record", "nowhere/walk.csv", code=CANNOT_WRITE)
+        self.write("mine.json", {"extends": "stereo.json"})
+        self.assertIn("mine.json", self.vr({}, "--log", "mine.json", "--frames", "1", graph="mine.json", code=USAGE).stderr)
+        self.vr({}, "--log", "a.csv", "--record", "a.csv", "--frames", "1", code=USAGE)
         for option in ("scale", "floor", "fly-speed", "speed", "frames", "seed", "resolution", "frame-limit"):
             for value in ("nan", "inf", "0x10", "+1", "01", "", "1e99"):
                 self.assertIn(f"--{option}", self.vr({}, f"--{option}={value}", code=USAGE).stderr)
@@ -223,7 +226,9 @@ class VrFaults(VrTest):
 class VrMemory(VrTest):
     def peak(self, frames):
         """Of the memory of a run, in bytes."""
-        run = subprocess.Popen(self.command("vr", "stereo", "--scene", "cornellbox", "--frames", frames), cwd=self.folder,
+        small = [word for value in ("vpl_count=64", "attempts=200", "voxels=16", "map_size=16", "shadow_map_size=128")
+                 for word in ("--set", value)]
+        run = subprocess.Popen(self.command("vr", "stereo", "--scene", "cornellbox", *small, "--frames", frames), cwd=self.folder,
                                env={**os.environ, **self.environment({"pictures_every": 0, "events": [
                                    {"frame": f, "what": what} for f in range(20, frames, 20) for what in ("unfocus", "focus")]})},
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

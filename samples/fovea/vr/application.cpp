@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "framework/base/files.h"
 #include "framework/base/text_file.h"
 #include "framework/graph/report/report.h"
 #include "framework/scene/load.h"
@@ -31,10 +32,17 @@ uint32_t scaled(uint32_t pixels, double factor) {
 
 }  // namespace
 
-Application::Application(const Options& options) : options_(options), progress_(false, options.frameLimit) {
+Application::Application(const Options& options)
+    : options_(options),
+      progress_(false, options.frameLimit),
+      watchdog_(std::chrono::duration<double>(options.frameLimit), ExitCode::DeviceLost,
+                session::frameLimitMessage(options.frameLimit)) {
+  std::vector<std::filesystem::path> files;
   for (const std::string& file : {options.record, options.log, options.timings})
-    if (!file.empty()) checkTextWritable(file);
+    if (!file.empty()) files.emplace_back(file);
+  for (const std::filesystem::path& file : files) checkTextWritable(file);
   loadInputs();
+  checkOutputs(files);  // that no file which was read is overwritten
   runtime_ = std::make_unique<Runtime>();
   chooseViews();
   build();
@@ -105,10 +113,13 @@ void Application::build() {
 void Application::run() {
   while (session_->follow()) {
     if (session::interrupted() || (options_.frames > 0 && index_ >= options_.frames)) session_->askForEnd();
-    if (session_->running())
-      frame();
-    else
+    if (!session_->running()) {
       std::this_thread::sleep_for(kPause);
+      continue;
+    }
+    watchdog_.begin();
+    frame();
+    watchdog_.end();
   }
   takeFinished(true);
   if (session_->end() == End::Lost)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/watchdog.h"
 #include "framework/session/graph_run.h"
 #include "framework/session/inputs.h"
 #include "framework/session/progress.h"
@@ -54,6 +55,7 @@ class Application {
 
   const Options& options_;
   session::Progress progress_;
+  Watchdog watchdog_;  // over frames
   Diagnostics messages_;
   graph::Description description_;
   scene::Scene scene_;

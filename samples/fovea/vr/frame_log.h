@@ -25,7 +25,6 @@ class FrameLog {
   void add(const LoggedFrame& frame) { frames_.push_back(frame); }
   // A picture that was due while nobody could see it, or while the head was not tracked.
   void skip() { ++skipped_; }
-  bool empty() const { return frames_.empty(); }
   std::string table() const;  // for people
   std::string csv() const;    // a row a frame
   // Throws Error(CannotWrite).

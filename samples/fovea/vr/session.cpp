@@ -99,8 +99,6 @@ bool Session::follow() {
     } else if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) {
       end_ = End::Lost;
       over_ = true;
-    } else if (event.type == XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) {
-      ++recentred_;
     }
   }
   // A runtime that has been asked and does not answer must not keep the program.
@@ -109,7 +107,6 @@ bool Session::follow() {
 }
 
 void Session::change(XrSessionState state) {
-  state_ = state;
   switch (state) {
     case XR_SESSION_STATE_READY: {
       XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO};

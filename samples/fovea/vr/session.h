@@ -58,12 +58,9 @@ class Session {
   // Follows what the runtime has said: begins, pauses and ends. Returns false once the session is over.
   bool follow();
   bool running() const { return running_; }  // whether frames are due
-  bool focused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
   End end() const { return end_; }
   // Asks for the end, which follow() brings: at once if no frames are due.
   void askForEnd();
-  // Number of times that something else than a frame has changed what is seen, such as the place of the floor.
-  uint64_t recentred() const { return recentred_; }
 
   FrameTime waitForFrame();  // and begins it
   // Shows these layers, or nothing.
@@ -75,11 +72,9 @@ class Session {
   const Runtime& runtime_;
   XrViewConfigurationType configuration_;
   XrSession handle_ = XR_NULL_HANDLE;
-  XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
   bool running_ = false, over_ = false, asked_ = false;
   std::chrono::steady_clock::time_point askedAt_;
   End end_ = End::Stopped;
-  uint64_t recentred_ = 0;
 };
 
 }  // namespace fovea::vr
