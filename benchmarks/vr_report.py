@@ -3,7 +3,7 @@
 
 Usage: benchmarks/vr_report.py FRAMES.csv [TIMINGS.json] -o FOLDER
 FRAMES.csv is what `fovea vr --log` wrote, TIMINGS.json what its `--timings` did in the same run. FOLDER receives
-vr.md, a table with medians and 95th percentiles, and the plot of all frames as vr.png, vr.svg and vr.pdf.
+vr.txt, a table with medians and 95th percentiles, and the plot of all frames as vr.png, vr.svg and vr.pdf.
 
 Exit code 2: the command line is wrong; 3: a file or a Python module cannot be used; 7: the folder cannot be written.
 """
@@ -87,7 +87,7 @@ def main():
     eyes = read_eyes(options.timings) if options.timings else {}
     try:
         plot(frames, options.folder)
-        (options.folder / "vr.md").write_text(table(frames, eyes), encoding="utf-8")
+        (options.folder / "vr.txt").write_text(table(frames, eyes), encoding="utf-8")
     except OSError as error:
         fail(CANNOT_WRITE, f"`{options.folder}` cannot be written ({error.strerror})")
 

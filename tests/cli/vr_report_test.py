@@ -17,7 +17,7 @@ class VrReport(ToolTest):
         log = self.log("0,0,0,1,20,,1", "1,0.011,0,0,,,3", "2,0.033,2,1,30,,2", "3,0.044,0,1,22,,4")
         timings = self.write("t.json", {"views": {"left": {"passes": 3, "ms": {"median": 5, "min": 4, "p95": 7}}}})
         self.succeeds(log, timings, "-o", "report")
-        text = (self.folder / "report/vr.md").read_text()
+        text = (self.folder / "report/vr.txt").read_text()
         self.assertIn("4 frames shown, 2 periods of the display missed, 1 frames without gaze.", text)
         for row in ("| gaze to display | 22.00 | 30.00 |", "| recording | 2.50 | 4.00 |", "| passes of view `left` | 5.00 | 7.00 |"):
             self.assertIn(row, text)

@@ -152,18 +152,20 @@ std::vector<std::string> smallSettings(const std::string& name) {
   static const std::map<std::string, std::vector<std::string>> others{
       {"direct", {}},
       {"reference", {"spp=2"}},
+      {"reference_stereo", {"spp=2"}},
       {"ddgi", {"probes=4", "rays=16"}},
       {"ddgi_two_bounces", {"probes=4", "rays=16"}},
       {"ddgi_foveated", {"probes=4", "rays=16", "first_rays=16"}},
       {"pt_denoised", {}},
       {"restir_gi", {}},
       {"restir_gi_foveated", {}},
+      {"restir_gi_stereo", {}},
       {"vxgi", {"voxels=24"}},
   };
   std::vector<std::string> set{"vpl_count=48", "map_size=16"};
   if (name.rfind("ir_", 0) != 0 || name.rfind("ir_v", 0) == 0) set.push_back("voxels=24");
   if (const auto other = others.find(name); other != others.end()) set = other->second;
-  if (name != "reference") set.push_back("shadow_map_size=128");
+  if (!name.starts_with("reference")) set.push_back("shadow_map_size=128");
   return set;
 }
 

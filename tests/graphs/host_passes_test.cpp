@@ -38,7 +38,7 @@ TEST(HostPasses, OnlyThePathTracerIsOne) {
     ++graphs;
   }
   EXPECT_GE(graphs, 25);
-  EXPECT_EQ(onHost, (std::set<std::string>{"pt_denoised", "reference"}));
+  EXPECT_EQ(onHost, (std::set<std::string>{"pt_denoised", "reference", "reference_stereo"}));
 }
 
 }  // namespace
