@@ -24,7 +24,8 @@ stage=$(mktemp -d)
 trap 'rm -rf "$stage"' EXIT
 echo "building in build/wheel (the first time takes minutes)"
 pip wheel . --quiet --no-deps --no-build-isolation --wheel-dir "$stage" \
-  --config-settings=cmake.define.FOVEA_OPENIMAGEIO=OFF --config-settings=cmake.define.FOVEA_EMBREE=OFF ||
+  --config-settings=cmake.define.FOVEA_OPENIMAGEIO=OFF --config-settings=cmake.define.FOVEA_EMBREE=OFF \
+  --config-settings=cmake.define.FOVEA_OPENXR=OFF ||
   fail "the build failed, see above"
 
 # Every library that is neither the system's nor the Vulkan loader comes along. The tag says which glibc is needed.
