@@ -31,8 +31,9 @@ TEST(InstantRadiosity, FurnaceIsEvenlyLitByItsBounces) {
   const scene::Scene s = litSphere(kRho);
   for (const int bounces : {1, 2, 4}) {
     // Enough paths for their mean number of bounces to be within 1% or so.
-    const GraphRun run = runIr(
-        "debug/ir_accumulated", s, {"vpl_count=1024", "kernel=clamp", "bounces=" + std::to_string(bounces)}, 64, 4);
+    const GraphRun run =
+        runIr("debug/ir_accumulated", s,
+              {"vpl_count=1024", "kernel=clamp", "bounces=" + std::to_string(bounces)}, 64, 4);
     const double expected = litSphereRadiance(kRho, bounces);
     const auto indirect = toFloats(run.outputs.at("indirect"));
     double mean = 0;

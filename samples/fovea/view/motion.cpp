@@ -72,7 +72,8 @@ scene::Moment Motion::next(const scene::Scene& scene) {
   if (steps_ > 0) --steps_;
   moved_ = false;
   const double now = std::max(0.0, time());
-  const scene::Moment m = course_.next(scene, index_, {.time = now, .camera = steeredCamera(scene, now), .gaze = gaze_});
+  const scene::Moment m =
+      course_.next(scene, index_, {.time = now, .camera = steeredCamera(scene, now), .gaze = gaze_});
   if (recording_) record(m);
   ++index_;
   return m;
